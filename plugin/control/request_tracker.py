@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages.base import DESK_REQUESTS, to_json
-from ...robot_bridge.core.messages.commands import AbortAll, Send
+from ...robot_bridge.core.messages.commands import MOVING, AbortAll, Send
 from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ...robot_bridge.core.messages.robots import Abort
 from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
@@ -62,10 +62,14 @@ class RequestSender(QObject):
         if not (request.lasting or _stops(request) or DESK_REQUESTS[request.method].stops):
             # Its places and robots are those that this operator sees: no other gateway may carry it out.
             request = replace(request, ground=self._state.ground)
-        if self._state.link.phase is ConnectionPhase.CONNECTED:
+        if DESK_REQUESTS[request.method].priority in MOVING and not _stops(request):
+            self.check_standstill()
+        phase = self._state.link.phase
+        if phase is ConnectionPhase.CONNECTED:
             self._connection.submit(request)
             return
-        if not (_stops(request) and self._connection.is_open):
+        is_tried = self._connection.is_open and phase is not ConnectionPhase.FAILED
+        if not (_stops(request) and is_tried):
             raise NotSentError(
                 tr(
                     "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
@@ -86,6 +90,17 @@ class RequestSender(QObject):
             )
         self._not_sent_yet.add(text)
         self.failed.emit(text)
+
+    def check_standstill(self) -> None:
+        """Raise NotSentError where what is asked for now may have been clicked long ago."""
+        if seconds := self._state.standstill:
+            raise NotSentError(
+                tr(
+                    "this window, or the computer, stood still for {seconds:.0f} s, and what was clicked "
+                    "meanwhile may be old. Look at the robots, then ask again.",
+                    seconds=seconds,
+                )
+            )
 
     def _answered(self, answer: RequestResult) -> None:
         for receiver in self._receivers:
@@ -148,6 +163,11 @@ class RequestTracker(QObject):
     def __len__(self) -> int:
         return len(self._pending)
 
+    @property
+    def unanswered(self) -> list[str]:
+        """What was asked for and is not answered yet, in words, the oldest first."""
+        return [pending.words for pending in self._pending.values()]
+
     def forget_drafts(self) -> None:
         """Restore no draft that was sent before: its places are another site's."""
         for pending in self._pending.values():
@@ -170,6 +190,10 @@ class RequestTracker(QObject):
             )
         op, params = draft.message()
         return self._command(draft.robot, op, params, draft.in_words(), draft, draft.override)
+
+    def check_standstill(self) -> None:
+        """Raise NotSentError where what is asked for now may have been clicked long ago."""
+        self._sender.check_standstill()
 
     def abort(self, robot: str) -> str:
         """Request an abort for one robot and return the command's id.
@@ -295,12 +319,7 @@ class RequestTracker(QObject):
         now = self._clock.steady()
         for pending in self._pending.values():
             if not pending.slow_notice and now - pending.requested_at > SLOW_AFTER:
-                pending.slow_notice = tr(
-                    "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
-                    "arrived. It is repeated when the link is back; it is never done twice.",
-                    words=pending.words,
-                    seconds=SLOW_AFTER,
-                )
+                pending.slow_notice = _slow_notice(pending)
                 self.slow.emit(pending.slow_notice)
 
     def _command(
@@ -333,6 +352,24 @@ class RequestTracker(QObject):
             raise NotSentError(text, topics) from error
         self._pending[order.key] = PendingRequest(words, order.requested_at, draft, topics=topics)
         return order.key
+
+
+def _slow_notice(pending: PendingRequest) -> str:
+    if pending.stops:
+        return tr(
+            "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
+            "arrived. It is repeated when the link is back; it is never done twice.",
+            words=pending.words,
+            seconds=SLOW_AFTER,
+        )
+    return tr(
+        "{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated "
+        "if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; it is never done "
+        "twice.",
+        words=pending.words,
+        seconds=SLOW_AFTER,
+        limit=REPEAT_WITHIN,
+    )
 
 
 def topics_of(method: str, params: dict[str, Any]) -> tuple[Topic, ...]:

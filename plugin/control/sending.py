@@ -154,6 +154,7 @@ class CommandSender(QObject):
 
     def _send_when_known(self, draft: PendingCommand) -> None:
         """Send the draft, or a target whose way is still sought as soon as that is known."""
+        self._orders.check_standstill()
         if draft.way.kind is ApproachKind.SOUGHT:
             self._set_waiting(draft)
             return
@@ -207,10 +208,11 @@ class CommandSender(QObject):
 
         Not if it was changed by then, nor if the operator has not seen its present warnings.
 
-        :raises FleetError: when it cannot be checked.
+        :raises FleetError: when it cannot be checked, or was not asked for now.
         """
         draft = self._drafts.draft
         assert draft is not None
+        self._orders.check_standstill()
         self._pressed = draft, time.monotonic()
         known = draft.findings.warnings
 

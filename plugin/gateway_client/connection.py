@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import threading
 from types import ModuleType
 from typing import Any
@@ -17,7 +18,7 @@ from ..ui.vendored import websocket_library
 from . import connection_status
 from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
-from .protocol import GatewayProtocol
+from .protocol import GatewayProtocol, stops_robots
 from .robot_states import table_from_frame
 
 CLOSE_WITHIN = 0.2
@@ -27,6 +28,8 @@ MOST_WAITING = 1
 AWAKE_EVERY = 1.0
 ASLEEP_AFTER = 8.0
 """Seconds: messages that waited in this computer for longer would be taken for new."""
+STOP_TRIES_EVERY = 0.5
+"""Seconds between two attempts to connect at most, while a stop waits to be sent."""
 
 
 class GatewayClient:
@@ -56,6 +59,7 @@ class GatewayClient:
         self._refusals: dict[str, GatewayLinkError] = {}
         self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
+        self._stop_asked = asyncio.Event()
 
     @property
     def _url(self) -> str:
@@ -71,12 +75,20 @@ class GatewayClient:
                 if failure.final and self._has_refused(failure):
                     return
                 reason = self._because(failure)
-                wait = self._addresses.next_wait(ends=failure.ends)
-                due = steady_time() + wait
-                self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
-                await asyncio.sleep(wait)
+                await self._wait_to_try(reason, self._addresses.next_wait(ends=failure.ends))
         finally:
             self._protocol.end()
+
+    async def _wait_to_try(self, reason: str, wait: float) -> None:
+        """Wait until the next attempt is due; with a stop that is to be sent, that is soon."""
+        # Of an event, some Pythons (3.9) find the loop when it is made.
+        self._stop_asked = asyncio.Event()
+        if self._protocol.has_stop:
+            wait = min(wait, STOP_TRIES_EVERY)
+        due = steady_time() + wait
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
+        with contextlib.suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(self._stop_asked.wait(), wait)
 
     def _has_refused(self, failure: GatewayLinkError) -> bool:
         """Record and report that a gateway refuses for good; return true where there is no other to try."""
@@ -96,8 +108,10 @@ class GatewayClient:
         return " ".join(dict.fromkeys([str(failure), *map(str, self._refusals.values())]))
 
     def submit(self, order: OperatorRequest) -> None:
-        """Send ``order`` now, or as soon as there is a link again."""
+        """Send ``order`` now, or as soon as there is a link again; what stops robots, has that tried now."""
         self._send_all(self._protocol.submit(order))
+        if stops_robots(order):
+            self._stop_asked.set()
 
     async def _attempt(self) -> GatewayLinkError:
         """Hold one link and return why it ended."""
@@ -324,7 +338,12 @@ class ConnectionThread(QObject):
         self._forget_ended()
 
     def _forget_ended(self) -> None:
-        self._ending = [worker for worker in self._ending if not worker.isFinished()]
+        """Keep of links that have ended what became of requests: another one may be open by now."""
+        for worker in [worker for worker in self._ending if worker.isFinished()]:
+            self._ending.remove(worker)
+            if worker.buffer is not self._buffer:
+                for answer in worker.buffer.collect().answers:
+                    self._buffer.add_answer(answer)
 
 
 class _Worker(QThread):
@@ -334,7 +353,7 @@ class _Worker(QThread):
         super().__init__()
         self.setObjectName("fleet_connection")
         self._client = client
-        self._buffer = buffer
+        self.buffer = buffer
         self._lock = threading.Lock()
         self._early: list[OperatorRequest] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -364,7 +383,7 @@ class _Worker(QThread):
         try:
             self._run_loop()
         except Exception as error:
-            self._buffer.add(
+            self.buffer.add(
                 link=ConnectionStatus(
                     ConnectionPhase.FAILED,
                     tr(

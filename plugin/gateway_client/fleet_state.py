@@ -72,6 +72,7 @@ class RequestResult:
 
     ``outdated`` is true when it was refused because its object has changed since it was read.
     ``overridable`` is all that speaks against it where it was refused, but can be done with an override.
+    ``may_be_done`` is true of a refusal where it was sent on a lost link as well: it may have been done then.
     """
 
     order: OperatorRequest
@@ -79,6 +80,7 @@ class RequestResult:
     error: str | None = None
     outdated: bool = False
     overridable: tuple[str, ...] = ()
+    may_be_done: bool = False
 
 
 # --- The store ---
@@ -202,6 +204,9 @@ class UpdateSource(Protocol):
 
 LATE_S = 0.1
 """Age in seconds from which collected updates are not applied without polling for newer ones."""
+STANDSTILL_S, CATCHING_UP_S = 5.0, 1.0
+"""Seconds without a collection after which clicks may be old, and seconds in which the window handles the
+clicks made meanwhile."""
 CONFLICTS_SILENT_AFTER = 10.0
 """Seconds without a report after which conflicts are not known any more."""
 
@@ -277,6 +282,7 @@ class FleetState(QObject):
         """Identifies the gateway's database; empty where the gateway does not name it."""
         self._is_running = self._is_collected = False
         self._collected_at = self._due = clock.steady()
+        self._standstill, self._caught_up_at = 0.0, self._due
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.timeout.connect(self._next)
@@ -298,8 +304,21 @@ class FleetState(QObject):
         """
         self._is_other_gateway = self._is_other_gateway or url != self._url
         self._url = url
+        if not self._is_running:
+            self._collected_at = self.clock.steady()
         self._is_running = True
         self.pull()
+
+    @property
+    def standstill(self) -> float:
+        """For how many seconds the window did nothing until now, or a moment ago; 0 where it was at work.
+
+        What is clicked in a window that hangs, or on a computer that sleeps, is dealt with when that is over.
+        """
+        now = self.clock.steady()
+        if self._is_running and now - self._collected_at > STANDSTILL_S:
+            return now - self._collected_at
+        return self._standstill if now < self._caught_up_at else 0.0
 
     def stop(self) -> None:
         """Stop collecting."""
@@ -339,7 +358,10 @@ class FleetState(QObject):
         self.updated.emit()
 
     def _collect(self) -> None:
-        self._collected_at = self.clock.steady()
+        now = self.clock.steady()
+        if self._is_running and now - self._collected_at > STANDSTILL_S:
+            self._standstill, self._caught_up_at = now - self._collected_at, now + CATCHING_UP_S
+        self._collected_at = now
         self.merge(self._source.collect_updates())
 
     def merge(self, update: StateUpdate) -> None:

@@ -9,9 +9,9 @@ from typing import Any
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
-from ...robot_bridge.core.messages import administration, links, records, roads, safety
+from ...robot_bridge.core.messages import administration, commands, links, records, roads, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
-from ...robot_bridge.core.messages.base import LONGEST_OPERATOR, one_line, to_json
+from ...robot_bridge.core.messages.base import DESK_REQUESTS, LONGEST_OPERATOR, Role, one_line, to_json
 from ...robot_bridge.core.messages.commands import GetCommands
 from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe, View
@@ -64,17 +64,26 @@ REPEAT_WITHIN = 30.0
 """Seconds within which a request may be sent, or repeated, on a later link, and be begun there."""
 
 
+def stops_robots(order: OperatorRequest) -> bool:
+    """Tell whether an order stops robots at once: it goes before all others."""
+    request = DESK_REQUESTS.get(order.method)
+    return request is not None and commands.stops_robots(request, order.params.get("op"))
+
+
 class RequestOutbox:
     """Keeps requests over the loss of a link, so that each is repeated until answered and then never again.
 
     A robot must not drive off because of an old request: one older than ``repeat_within`` seconds is not
     repeated but handed back as not known to have arrived, unless it is lasting. Nor must a robot drive to
     numbers of another site's frame: a request made in another context (``ground``) is handed back as well.
+    A request that a later stop makes void is never repeated, whether or not that stop was answered: it may
+    have stopped nothing yet, or the gateway's refusal of the request may be lost.
     """
 
     def __init__(self, repeat_within: float = REPEAT_WITHIN):
         self._repeat_within = repeat_within
         self._waiting: dict[str, OperatorRequest] = {}
+        self._void: set[str] = set()
 
     def __len__(self) -> int:
         return len(self._waiting)
@@ -86,27 +95,46 @@ class RequestOutbox:
         """Keep ``order`` until it is answered; false when the same request waits already."""
         if order.key in self._waiting:
             return False
+        if stops_robots(order):
+            self._void |= {key for key, one in self._waiting.items() if _is_made_void(one, order)}
         self._waiting[order.key] = order
         return True
 
     def answered(self, key: str) -> OperatorRequest | None:
         """Remove and return the request that was answered; None when it was answered before."""
+        self._void.discard(key)
         return self._waiting.pop(key, None)
 
     def renew(self, now: float) -> tuple[list[OperatorRequest], list[OperatorRequest]]:
-        """Return the requests to send on a new link, oldest first, and those too old, which are removed."""
+        """Return the requests to send on a new link, and those too old, which are removed.
+
+        Stops come first, then the oldest.
+        """
         limit = now - self._repeat_within
         too_old = [o for o in self._waiting.values() if o.requested_at < limit and not o.lasting]
-        for order in too_old:
-            del self._waiting[order.key]
-        return list(self._waiting.values()), too_old
+        self._withdraw(too_old)
+        return sorted(self._waiting.values(), key=lambda one: not stops_robots(one)), too_old
+
+    @property
+    def has_stop(self) -> bool:
+        """Whether something waits that stops robots."""
+        return any(map(stops_robots, self._waiting.values()))
+
+    def withdraw_void(self) -> list[OperatorRequest]:
+        """Take out the orders that a stop has made void, and return them."""
+        void = [self._waiting[key] for key in self._waiting if key in self._void]
+        self._withdraw(void)
+        return void
 
     def without_ground(self, ground: RequestGround) -> list[OperatorRequest]:
         """Remove and return the requests that were made in another context than ``ground``."""
         strange = [one for one in self._waiting.values() if not _holds_on(one, ground)]
-        for order in strange:
-            del self._waiting[order.key]
+        self._withdraw(strange)
         return strange
+
+    def _withdraw(self, orders: list[OperatorRequest]) -> None:
+        for order in orders:
+            self.answered(order.key)
 
     def largest(self) -> tuple[OperatorRequest | None, int]:
         """Remove the largest waiting request, and return it with its size in bytes; never a stop."""
@@ -114,17 +142,25 @@ class RequestOutbox:
         if not sizes:
             return None, 0
         key = max(sizes, key=sizes.__getitem__)
-        return self._waiting.pop(key), sizes[key]
+        return self.answered(key), sizes[key]
 
     def clear(self) -> list[OperatorRequest]:
         """Remove and return all waiting requests."""
         left = list(self._waiting.values())
-        self._waiting.clear()
+        self._withdraw(left)
         return left
 
 
 def _holds_on(order: OperatorRequest, ground: RequestGround) -> bool:
     return order.ground is None or order.ground.is_same(ground)
+
+
+def _is_made_void(order: OperatorRequest, stop: OperatorRequest) -> bool:
+    """Tell whether ``order`` would set in motion what ``stop``, asked for after it, is to stop."""
+    request = DESK_REQUESTS.get(order.method)
+    if request is None or stops_robots(order):
+        return False
+    return commands.is_overtaken(request, order.params.get("robot"), stop.params.get("robot"))
 
 
 class GatewayProtocol:
@@ -154,6 +190,9 @@ class GatewayProtocol:
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
         self._pending: dict[int, OperatorRequest] = {}
+        self._sent: set[str] = set()
+        self._sent_before: set[str] = set()
+        """Orders without an answer, by their keys: those sent on this link, and on one that was lost."""
         self._gateway_ahead: float | None = None
         """Seconds by which the gateway's clock for deadlines is ahead of ours; None where it has none."""
         self._ground: RequestGround | None = None
@@ -161,7 +200,7 @@ class GatewayProtocol:
         self._view: dict[str, Any] | None = None
         """The view that the window wants to receive, None for every robot."""
         self._knows_views = False
-        self.ready = False
+        self.ready = self._has_ended = False
         self.operator, self.role = "", ""
         """The desk's account and role at the gateway; empty until known."""
         self.names: dict[str, str] = {}
@@ -174,6 +213,8 @@ class GatewayProtocol:
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
         self._pending.clear()
+        self._sent_before = {key for key in self._sent_before | self._sent if key in self._outbox}
+        self._sent.clear()
         self._gateway_ahead = None
         self.ready = False
         # A name that the gateway would refuse must not lock out the operator.
@@ -189,10 +230,17 @@ class GatewayProtocol:
             self._view = order.params.get("view")
             return [self._subscription()] if self.ready and self._knows_views else []
         if not self._outbox.add(order) or not self.ready:
+            if self._has_ended:
+                self.end()
             return []
         # The window may not know yet which gateway has greeted since its last poll.
         self._hand_back_foreign()
         return [self._request(order)] if order.key in self._outbox else []
+
+    @property
+    def has_stop(self) -> bool:
+        """Whether something that stops robots waits for a link, or for its answer."""
+        return self._outbox.has_stop
 
     def end_link(self) -> None:
         """Send nothing until the next link has been greeted."""
@@ -215,7 +263,8 @@ class GatewayProtocol:
             self._buffer.add_answer(RequestResult(order, error=_other_ground()))
 
     def end(self) -> None:
-        """Hand back every unanswered request: nobody will repeat it any more."""
+        """Hand back every unanswered request, and from now on each at once: there is no link."""
+        self.ready, self._has_ended = False, True
         for order in self._outbox.clear():
             self._buffer.add_answer(
                 RequestResult(
@@ -248,6 +297,8 @@ class GatewayProtocol:
     def _request(self, order: OperatorRequest) -> str:
         number = next(self._ids)
         self._pending[number] = order
+        if order.key in self._outbox:
+            self._sent.add(order.key)
         frame = {"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params}
         if order.ground is not None and self._gateway_ahead is not None:
             frame["deadline"] = round(order.requested_at + REPEAT_WITHIN + self._gateway_ahead, 3)
@@ -349,18 +400,20 @@ class GatewayProtocol:
         self._set_clock(result)
         self.ready = True
         self._hand_back_foreign()
-        orders, too_old = self._outbox.renew(self._clock.steady())
+        for order in self._outbox.withdraw_void():
+            self._buffer.add_answer(RequestResult(order, error=_made_void()))
+        orders, too_old = self._outbox.renew(now := self._clock.steady())
         for order in too_old:
-            self._buffer.add_answer(
-                RequestResult(order, error=_too_old(self._clock.steady() - order.requested_at))
-            )
+            self._buffer.add_answer(RequestResult(order, error=_too_old(order, now)))
         first = [
             OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
             OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
             OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
         ]
-        return [self._subscription(), *(self._request(order) for order in (*first, *orders))]
+        stops = [self._request(order) for order in orders if stops_robots(order)]
+        others = (*first, *(order for order in orders if not stops_robots(order)))
+        return [*stops, self._subscription(), *map(self._request, others)]
 
     def _choose_view(self, result: dict[str, Any]) -> None:
         """Start with a view where there are many robots; the window then requests the one that it shows."""
@@ -402,6 +455,9 @@ class GatewayProtocol:
 
     def _order_answered(self, order: OperatorRequest, message: dict[str, Any]) -> list[str]:
         waiting = self._outbox.answered(order.key)
+        may_be_done = order.key in self._sent_before and _changes_something(order)
+        self._sent.discard(order.key)
+        self._sent_before.discard(order.key)
         if "error" in message:
             self._set_clock(_data(message))
             outdated = _code(message) == OUTDATED
@@ -412,8 +468,12 @@ class GatewayProtocol:
                 self._buffer.add(is_driving=False)
             if waiting is not None:
                 found = _found(message) if _code(message) == OVERRIDABLE else ()
+                text = _error_text(message)
+                text = f"{text}. {_sent_twice()}" if may_be_done else text
                 self._buffer.add_answer(
-                    RequestResult(order, error=_error_text(message), outdated=outdated, overridable=found)
+                    RequestResult(
+                        order, error=text, outdated=outdated, overridable=found, may_be_done=may_be_done
+                    )
                 )
             return []
         result = message.get("result") or {}
@@ -433,6 +493,11 @@ class GatewayProtocol:
         if waiting is not None:
             self._buffer.add_answer(RequestResult(order, result=result))
         return []
+
+
+def _changes_something(order: OperatorRequest) -> bool:
+    request = DESK_REQUESTS.get(order.method)
+    return request is not None and request.least_role is not Role.VIEWER
 
 
 def checked_site(site: SiteReport) -> SiteReport:
@@ -480,7 +545,28 @@ def _other_ground() -> str:
     )
 
 
-def _too_old(age: float) -> str:
+def _sent_twice() -> str:
+    return tr(
+        "It was sent before on a link that was lost, and may have been done then: look before you ask again."
+    )
+
+
+def _made_void() -> str:
+    return tr(
+        "The link was lost before the gateway answered, and it was not sent again: robots were asked to stop "
+        "after it. If it had arrived before, the command log shows it, and the stop ends it."
+    )
+
+
+def _too_old(order: OperatorRequest, now: float) -> str:
+    age = now - order.requested_at
+    if stops_robots(order):
+        return tr(
+            "The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: the "
+            "robot may be doing something else by now. Look at the robot, and ask again if it shall still "
+            "stop.",
+            age=age,
+        )
     return tr(
         "The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a "
         "robot shall not drive off on an old order. Look in the command log and send it again if it is "

@@ -54,6 +54,9 @@ from ..ui.tables import RowModel, ZoomMenu, shrink_view
 QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
 
 CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
+PERHAPS_DONE = tr(
+    "The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now."
+)
 
 
 class QueueEdits(QObject):
@@ -162,7 +165,7 @@ class QueueEdits(QObject):
         if robot is None:
             return
         if answer.outdated:
-            self._conflicts[robot] = CHANGED_MEANWHILE
+            self._conflicts[robot] = PERHAPS_DONE if answer.may_be_done else CHANGED_MEANWHILE
         self.changed.emit()
 
     def _clear(self) -> None:

@@ -1446,6 +1446,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>this window, or the computer, stood still for {seconds:.0f} s, and what was clicked meanwhile may be old. Look at the robots, then ask again.</source>
+            <translation>aquesta finestra, o l'ordinador, ha estat aturada {seconds:.0f} s, i allò que s'ha clicat mentrestant pot ser antic. Mireu els robots i torneu-ho a demanar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{draft} was not sent: {fault}</source>
             <translation>{draft}: no s'ha enviat: {fault}</translation>
         </message>
@@ -1476,6 +1481,11 @@
                 <numerusform>{words}: enviat a %n robot</numerusform>
                 <numerusform>{words}: enviat a %n robots</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; it is never done twice.</source>
+            <translation>{words}: la passarel·la no ha respost en {seconds:g} s, de manera que potser no ha arribat. Es repeteix si l'enllaç torna en {limit:g} s, tret que mentrestant es demani aturar robots; mai no es fa dues vegades.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1929,6 +1939,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>It was sent before on a link that was lost, and may have been done then: look before you ask again.</source>
+            <translation>Ja s'havia enviat per un enllaç que s'ha perdut, i potser es va fer llavors: mireu-ho abans de tornar-ho a demanar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>Cap operador no es pot connectar a {url}: el que hi respon no coneix cap consola, com tampoc l'adreça dels robots. La consola d'una passarel·la té el camí /desk, com a {default_url}. Corregiu l'URL i premeu Connecta.</translation>
         </message>
@@ -1964,8 +1979,18 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and it was not sent again: robots were asked to stop after it. If it had arrived before, the command log shows it, and the stop ends it.</source>
+            <translation>L'enllaç s'ha perdut abans que la passarel·la respongués, i no s'ha tornat a enviar: després s'ha demanat aturar robots. Si havia arribat abans, surt al registre d'ordres, i l'aturada l'acaba.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>L'enllaç s'ha perdut abans que la passarel·la respongués, i {age:.0f} s després no s'ha repetit: un robot no ha d'arrencar per una ordre antiga. Mireu el registre d'ordres i torneu-la a enviar si no hi és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: the robot may be doing something else by now. Look at the robot, and ask again if it shall still stop.</source>
+            <translation>L'enllaç s'ha perdut abans que la passarel·la respongués, i {age:.0f} s després no s'ha repetit: el robot potser ja fa una altra cosa. Mireu el robot i torneu-ho a demanar si encara s'ha d'aturar.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -5117,6 +5142,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
+            <translation>L'enllaç s'ha perdut abans de la resposta, i la cua ha canviat, potser per això. Ara està així.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>added by {by}</source>
             <translation>afegida per {by}</translation>
         </message>
@@ -5457,13 +5487,38 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Closed before the gateway answered, so it may be done or not: {asked}</source>
+            <translation>S'ha tancat abans que la passarel·la respongués, i per tant pot estar fet o no: {asked}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hi ha cap parada d'emergència en vigor.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Quit all the same</source>
+            <translation>Surt igualment</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Quit before the gateway has answered?</source>
+            <translation>Voleu sortir abans que la passarel·la respongui?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Stay</source>
+            <translation>Queda't</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Objectius i rutes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The gateway has not answered yet: {asked}. Who quits now does not learn whether it is done, and what is not sent yet never is.</source>
+            <translation>La passarel·la encara no ha respost: {asked}. Qui surt ara no sabrà si es fa, i el que encara no s'ha enviat no s'enviarà mai.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />

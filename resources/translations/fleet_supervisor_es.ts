@@ -1446,6 +1446,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>this window, or the computer, stood still for {seconds:.0f} s, and what was clicked meanwhile may be old. Look at the robots, then ask again.</source>
+            <translation>esta ventana, o el ordenador, estuvo parada {seconds:.0f} s, y lo que se pulsó entretanto puede ser antiguo. Mire los robots y vuelva a pedirlo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{draft} was not sent: {fault}</source>
             <translation>{draft}: no se envió: {fault}</translation>
         </message>
@@ -1476,6 +1481,11 @@
                 <numerusform>{words}: enviado a %n robot</numerusform>
                 <numerusform>{words}: enviado a %n robots</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; it is never done twice.</source>
+            <translation>{words}: la pasarela no ha respondido en {seconds:g} s, así que quizá no haya llegado. Se repite si el enlace vuelve en {limit:g} s, salvo que entretanto se pida parar robots; nunca se hace dos veces.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1929,6 +1939,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>It was sent before on a link that was lost, and may have been done then: look before you ask again.</source>
+            <translation>Ya se envió por un enlace que se perdió, y puede haberse hecho entonces: mírelo antes de volver a pedirlo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>Ningún operador puede conectarse a {url}: lo que responde allí no conoce ninguna consola, como tampoco la dirección de los robots. La consola de una pasarela tiene la ruta /desk, como en {default_url}. Corrija la URL y pulse Conectar.</translation>
         </message>
@@ -1964,8 +1979,18 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and it was not sent again: robots were asked to stop after it. If it had arrived before, the command log shows it, and the stop ends it.</source>
+            <translation>El enlace se perdió antes de que la pasarela respondiera, y no se volvió a enviar: después se pidió parar robots. Si había llegado antes, está en el registro de órdenes, y la parada lo termina.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>El enlace se perdió antes de que la pasarela respondiera, y {age:.0f} s después no se repitió: un robot no debe arrancar por una orden antigua. Mire el registro de órdenes y vuelva a enviarla si no está.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: the robot may be doing something else by now. Look at the robot, and ask again if it shall still stop.</source>
+            <translation>El enlace se perdió antes de que la pasarela respondiera, y {age:.0f} s después no se repitió: el robot puede estar haciendo ya otra cosa. Mire el robot y vuelva a pedirlo si todavía debe parar.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -5117,6 +5142,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
+            <translation>El enlace se perdió antes de la respuesta, y la cola ha cambiado, quizá por esto. Ahora está así.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>added by {by}</source>
             <translation>añadida por {by}</translation>
         </message>
@@ -5457,13 +5487,38 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Closed before the gateway answered, so it may be done or not: {asked}</source>
+            <translation>Se cerró antes de que la pasarela respondiera, así que puede estar hecho o no: {asked}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hay ninguna parada de emergencia en vigor.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Quit all the same</source>
+            <translation>Salir de todos modos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Quit before the gateway has answered?</source>
+            <translation>¿Salir antes de que la pasarela responda?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Stay</source>
+            <translation>Quedarse</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Objetivos y rutas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The gateway has not answered yet: {asked}. Who quits now does not learn whether it is done, and what is not sent yet never is.</source>
+            <translation>La pasarela todavía no ha respondido: {asked}. Quien sale ahora no sabrá si se hace, y lo que aún no se ha enviado no se enviará nunca.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />

@@ -1439,6 +1439,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>this window, or the computer, stood still for {seconds:.0f} s, and what was clicked meanwhile may be old. Look at the robots, then ask again.</source>
+            <translation>ez az ablak vagy a számítógép {seconds:.0f} s-ig állt, és amire közben kattintottak, régi lehet. Nézze meg a robotokat, majd kérje újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{draft} was not sent: {fault}</source>
             <translation>{draft}: nem lett elküldve: {fault}</translation>
         </message>
@@ -1468,6 +1473,11 @@
             <translation>
                 <numerusform>{words}: elküldve %n robotnak</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; it is never done twice.</source>
+            <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Megismétlődik, ha a kapcsolat {limit:g} s-on belül visszatér, hacsak közben a robotok megállítását nem kérik; kétszer sosem hajtódik végre.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1921,6 +1931,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>It was sent before on a link that was lost, and may have been done then: look before you ask again.</source>
+            <translation>Egy megszakadt kapcsolaton már elküldték, és akkor végrehajtódhatott: nézze meg, mielőtt újra kéri.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>A(z) {url} címen kezelő nem kapcsolódhat: ami ott válaszol, nem ismer kezelőpultot, ahogy a robotok címe sem. Az átjáró kezelőpultjának útvonala /desk, mint itt: {default_url}. Javítsa az URL-t, majd nyomja meg a Kapcsolódás gombot.</translation>
         </message>
@@ -1956,8 +1971,18 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and it was not sent again: robots were asked to stop after it. If it had arrived before, the command log shows it, and the stop ends it.</source>
+            <translation>A kapcsolat megszakadt, mielőtt az átjáró válaszolt volna, és nem lett újra elküldve: utána a robotok megállítását kérték. Ha mégis megérkezett, a parancsnaplóban látszik, és a megállítás véget vet neki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>A kapcsolat megszakadt, mielőtt az átjáró válaszolt volna, és {age:.0f} s múlva már nem lett megismételve: robot ne induljon el régi parancsra. Nézze meg a parancsnaplót, és küldje újra, ha nincs ott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: the robot may be doing something else by now. Look at the robot, and ask again if it shall still stop.</source>
+            <translation>A kapcsolat megszakadt, mielőtt az átjáró válaszolt volna, és {age:.0f} s múlva már nem lett megismételve: a robot azóta mást csinálhat. Nézze meg a robotot, és kérje újra, ha még mindig meg kell állnia.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -5089,6 +5114,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
+            <translation>A kapcsolat a válasz előtt megszakadt, és a várólista megváltozott, talán éppen ettől. Most így áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>added by {by}</source>
             <translation>hozzáadta: {by}</translation>
         </message>
@@ -5429,13 +5459,38 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Closed before the gateway answered, so it may be done or not: {asked}</source>
+            <translation>Bezárva, mielőtt az átjáró válaszolt volna, ezért nem ismert, hogy végrehajtódott-e: {asked}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>Nincs érvényben vészleállítás.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source>Quit all the same</source>
+            <translation>Kilépés mégis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Quit before the gateway has answered?</source>
+            <translation>Kilép, mielőtt az átjáró válaszol?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>Stay</source>
+            <translation>Maradok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Célok és útvonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The gateway has not answered yet: {asked}. Who quits now does not learn whether it is done, and what is not sent yet never is.</source>
+            <translation>Az átjáró még nem válaszolt: {asked}. Aki most kilép, nem tudja meg, hogy végrehajtódik-e, és ami még nem lett elküldve, sosem lesz.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />

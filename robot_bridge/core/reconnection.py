@@ -1,4 +1,4 @@
-"""Reconnection to a fleet's gateways: addresses to try, back-off, token and TLS of robots, links and desks."""
+"""Reconnection to a fleet's gateways: addresses, back-off, token and TLS of robots, links and desks."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from typing import Any
 from ..errors import RefusedError
 from . import base
 from .base import DeskRequest, Done, MessageError, Priority, Role, known_fields
+from .robots import Abort
 from .safety import check_override, check_reason
 
 
@@ -224,6 +225,27 @@ class AbortTask(DeskRequest[CommandReport]):
             raise MessageError("give one of robot and aborts: whose task is to end, or which command")
         if self.robot is not None:
             base.check_robot_name(self.robot)
+
+
+# --- What a stop overtakes, on the way from the desk and at the gateway ---
+
+MOVING = (Priority.MOVE, Priority.MOVE_SEVERAL)
+
+
+def stops_robots(request: type[DeskRequest[Any]], op: str | None) -> bool:
+    """Tell whether a request stops robots at once; ``op`` is that of a ``send``, which may be an Abort."""
+    return request.priority is Priority.STOP or (request is Send and op == Abort.__name__)
+
+
+def is_overtaken(request: type[DeskRequest[Any]], robot: str | None, stopped: str | None) -> bool:
+    """Tell whether a request for ``robot`` moves what a stop of ``stopped`` that came after it is to stop.
+
+    None is every robot, or more than the one that is named. An Abort by ``send`` is for the caller to except.
+    """
+    if request.priority not in MOVING:
+        return False
+    several = request.priority is Priority.MOVE_SEVERAL
+    return several or robot is None or stopped is None or robot == stopped
 
 
 # --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---

@@ -30,12 +30,12 @@ from ...core.errors import (
     RefusedError,
 )
 from ...core.logs import log_and_continue
+from ...core.messages import commands
 from ...core.messages.administration import PROTOCOL_VERSION, Hello
 from ...core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, Priority, Role, to_json
 from ...core.messages.commands import Send
 from ...core.messages.positions import PositionForm, Subscribe
 from ...core.messages.roads import GetRoute
-from ...core.messages.robots import Abort
 from ...core.messages.safety import EmergencyStop
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
@@ -50,7 +50,6 @@ from ..monitoring import BackgroundTasks
 
 # --- The order of requests, and which ones a stop overtakes ---
 
-MOVING = (Priority.MOVE, Priority.MOVE_SEVERAL)
 MOST_WAITING, MOST_ASIDE, MOST_STOPPING = 256, 64, 1000
 """requests of one operator that wait their turn, that wait aside, and that stop robots, at most."""
 MOST_EMERGENCIES = 50
@@ -69,8 +68,12 @@ class ScheduledRequest(NamedTuple):
     @property
     def stops(self) -> bool:
         """Return whether the request stops robots."""
-        sent_by_hand = isinstance(self.request, Send) and self.request.op == Abort.__name__
-        return sent_by_hand or self.request.priority is Priority.STOP
+        return commands.stops_robots(type(self.request), getattr(self.request, "op", None))
+
+    @property
+    def words(self) -> str:
+        """The request as operators know it: the method, of a ``send`` the operation."""
+        return self.request.op if isinstance(self.request, Send) else self.request.method
 
 
 Settle = Callable[[ScheduledRequest, Exception | None], Coroutine[Any, Any, None]]
@@ -169,11 +172,8 @@ class _Lane:
 
 def _is_overtaken(waiting: ScheduledRequest, stop: DeskRequest[Any]) -> bool:
     """Return whether a request would set a robot in motion that the later ``stop`` must stop."""
-    if waiting.request.priority not in MOVING:
-        return False
-    one, other = getattr(stop, "robot", None), getattr(waiting.request, "robot", None)
-    several = waiting.request.priority is Priority.MOVE_SEVERAL
-    return several or one is None or other is None or one == other
+    robot, stopped = (getattr(one, "robot", None) for one in (waiting.request, stop))
+    return commands.is_overtaken(type(waiting.request), robot, stopped)
 
 
 def _is_renewed(waiting: ScheduledRequest, scheduled: ScheduledRequest) -> bool:
@@ -186,7 +186,7 @@ def _is_renewed(waiting: ScheduledRequest, scheduled: ScheduledRequest) -> bool:
 
 def _overtaken(late: ScheduledRequest, stop: ScheduledRequest) -> RefusedError:
     return RefusedError(
-        f"{late.request.method}: {stop.request.method} came after it and before it was begun, so that it was "
+        f"{late.words}: {stop.words} came after it and before it was begun, so that it was "
         "not done; ask again if it is to be done all the same"
     )
 

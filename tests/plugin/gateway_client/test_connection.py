@@ -314,6 +314,68 @@ def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(con
     assert len(gateway.requests_of("send")) == 1
 
 
+def test_an_abort_that_became_old_is_not_called_an_old_target(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
+    gateway.mute.add("send")
+    params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
+    connection.submit(OperatorRequest("command-1", "send", params, steady_time() - 60.0))
+    wait(lambda: gateway.requests_of("send"))
+    gateway.stop()
+    gateway.start()
+    answers = []
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6)
+    assert "ask again if it shall still stop" in answers[0].error and "drive off" not in answers[0].error
+
+
+def test_a_stop_does_not_wait_for_the_next_attempt(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
+    gateway.stop()
+    found = []
+
+    def waits_long():
+        found[:] = [connection.collect_updates().link]
+        return found[0].wait(steady_time()) > 2.5
+
+    wait(waits_long, 20, "a long wait")
+    gateway.start()
+    connection.submit(OperatorRequest("stop-1234", "emergency_stop", {"command": "stop-1234"}, lasting=True))
+    wait(lambda: gateway.requests_of("emergency_stop"), what="the stop")
+    assert steady_time() < found[0].next_try
+
+
+def test_a_refusal_of_what_was_sent_on_a_lost_link_says_that_it_may_be_done(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
+    gateway.mute.add("remove_task")
+    connection.submit(OperatorRequest("remove", "remove_task", {"robot": "r1"}, steady_time()))
+    wait(lambda: gateway.requests_of("remove_task"))
+    gateway.stop()
+    gateway.mute.clear()
+    gateway.refuse["remove_task"] = "task 1 is not in the queue"
+    gateway.start()
+    answers = []
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6)
+    assert answers[0].may_be_done and "may have been done then" in answers[0].error
+    connection.submit(OperatorRequest("again", "remove_task", {"robot": "r1"}, steady_time()))
+    wait(lambda: answers.extend(connection.collect_updates().answers) or len(answers) == 2)
+    assert not answers[1].may_be_done and answers[1].error == "task 1 is not in the queue"
+
+
+def test_another_link_tells_what_became_of_what_was_asked_on_the_one_before(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
+    gateway.mute.add("emergency_stop")
+    stop = OperatorRequest("stop-1234", "emergency_stop", {"command": "stop-1234"}, steady_time())
+    connection.submit(stop)
+    wait(lambda: gateway.requests_of("emergency_stop"))
+    connection.open(gateway.url, "anna")
+    answers = []
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers)
+    assert answers[0].order.key == "stop-1234" and "is not known" in answers[0].error
+
+
 def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
     connection.open(gateway.url, "anna")
     wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)

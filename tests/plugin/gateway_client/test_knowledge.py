@@ -53,6 +53,36 @@ def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
     assert len(outbox) == 2
 
 
+def test_what_stops_robots_is_repeated_first_and_what_it_makes_void_never():
+    outbox = RequestOutbox()
+    target = {"op": "SetPosEnd", "params": {}}
+    for key, method, params in (
+        ("r1 goes", "send", {"robot": "r1", **target}),
+        ("r2 goes", "send", {"robot": "r2", **target}),
+        ("r2 loses a task", "remove_task", {"robot": "r2"}),
+        ("r1 stops", "send", {"robot": "r1", "op": "Abort"}),
+        ("r1 goes later", "send", {"robot": "r1", **target}),
+    ):
+        outbox.add(OperatorRequest(key, method, params))
+    assert [order.key for order in outbox.withdraw_void()] == ["r1 goes"]
+    again, _ = outbox.renew(now=1.0)
+    assert [order.key for order in again] == ["r1 stops", "r2 goes", "r2 loses a task", "r1 goes later"]
+    outbox.add(OperatorRequest("all stop", "emergency_stop"))
+    outbox.answered("all stop")
+    assert [order.key for order in outbox.withdraw_void()] == ["r2 goes", "r1 goes later"]
+    assert [order.key for order in outbox.renew(now=1.0)[0]] == ["r1 stops", "r2 loses a task"]
+
+
+def test_what_is_asked_for_after_the_end_of_the_link_is_handed_back():
+    buffer = UpdateBuffer()
+    addresses = GatewayAddresses("ws://127.0.0.1:1/desk")
+    protocol = GatewayProtocol("anna", 10.0, addresses, buffer, ManualClock())
+    protocol.end()
+    assert protocol.submit(OperatorRequest("stop", "emergency_stop", lasting=True)) == []
+    (answer,) = buffer.collect().answers
+    assert answer.order.key == "stop" and "closed before the gateway answered" in answer.error
+
+
 def sighting(report, received=100.0):
     return table_from_rows([to_json(report)], received)
 
@@ -194,6 +224,7 @@ def test_what_a_robot_may_drive_off_on_has_a_deadline_by_the_gateways_clock(site
     assert greeting({"now": 1000.0}) == {**without, "send": 1020.0}
     (text,) = protocol.submit(OperatorRequest("stop", "emergency_stop", requested_at=49.0, lasting=True))
     assert "deadline" not in json.loads(text)
+    protocol.submit(replace(asked, key="after the stop"))
     # Another gateway has another clock, and an older one none.
     clock.advance(5.0)
     assert greeting({"now": 7.0}) == {**without, "send": 22.0, "emergency_stop": None}

@@ -76,6 +76,22 @@ def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, 
     assert window.desk.state.robots.row("r9") is None
 
 
+def test_what_was_clicked_before_the_window_stood_still_sends_no_robot_off(laptop, lid, gateway, wait, iface):
+    lid.asleep = HOURS
+    assert laptop.queue_edits.resume("r1") is None
+    assert any("what was clicked meanwhile may be old" in text for text in iface.texts())
+    # The window has caught up, and goes on with the clicks that waited.
+    laptop.desk.state.pull()
+    assert laptop.queue_edits.make_current("r1", "task-1") is None
+    assert gateway.requests_of("resume_queue") == gateway.requests_of("make_current") == []
+    laptop.desk.selection.select("r1")
+    laptop.desk.abort_selected()
+    wait(lambda: gateway.requests_of("send"), 10, "the Abort")
+    wait(lambda: laptop.desk.state.standstill == 0, what="the window having caught up")
+    wait(lambda: laptop.desk.state.link.phase.value == "connected", what="the link")
+    assert laptop.queue_edits.resume("r1") is not None
+
+
 def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gateway, wait, iface):
     laptop.desk.selection.select("r1")
     laptop.actions.cone.trigger()

@@ -16,6 +16,7 @@ from typing import Any
 
 from tests.support.bridge.bridge_programs import wait_until
 
+ALL_AT_ONCE = 65_536, 0.0
 CUT = 10.0
 """seconds for which a line is cut; a robot of an impatient site is lost after 1.6 s."""
 
@@ -25,28 +26,35 @@ class CutLine:
 
     def __init__(self, port: int) -> None:
         self._port = port
-        self._is_whole = threading.Event()
-        self._is_whole.set()
+        self._pace = ALL_AT_ONCE
         self._sockets: list[socket.socket] = []
+        self._is_whole, self._is_whole_back = threading.Event(), threading.Event()
+        self.mend()
         self._server = socket.create_server(("127.0.0.1", 0))
         self.address = f"ws://127.0.0.1:{self._server.getsockname()[1]}"
         threading.Thread(target=self._accept, daemon=True).start()
 
-    def cut(self) -> None:
-        """Let no byte through any more, in either direction."""
-        self._is_whole.clear()
+    def cut(self, *, only_back: bool = False) -> None:
+        """Let no byte through any more, in either direction; with ``only_back`` none from the port."""
+        self._is_whole_back.clear()
+        if not only_back:
+            self._is_whole.clear()
+
+    def slow_down(self, most: int, seconds: float) -> None:
+        """Let ``most`` bytes at a time through to the port, and each part only after ``seconds``."""
+        self._pace = most, seconds
 
     def mend(self, *, reset: bool = False) -> None:
         """Let bytes through again; with ``reset`` what waited is lost with its connections."""
         if reset:
             self._reset()
         self._is_whole.set()
+        self._is_whole_back.set()
 
     def close(self) -> None:
         """End the line for good."""
         self._server.close()
-        self._reset()
-        self._is_whole.set()
+        self.mend(reset=True)
 
     def _reset(self) -> None:
         sockets, self._sockets = self._sockets, []
@@ -64,14 +72,19 @@ class CutLine:
                 far = socket.create_connection(("127.0.0.1", self._port))
                 self._sockets += [near, far]
                 for source, target in ((near, far), (far, near)):
-                    threading.Thread(target=self._pump, args=(source, target), daemon=True).start()
+                    threading.Thread(target=self._pump, args=(source, target, near), daemon=True).start()
 
-    def _pump(self, source: socket.socket, target: socket.socket) -> None:
+    def _pump(self, source: socket.socket, target: socket.socket, near: socket.socket) -> None:
+        is_whole = self._is_whole if source is near else self._is_whole_back
         with contextlib.suppress(OSError):
-            while data := source.recv(65_536):
-                self._is_whole.wait()
+            while True:
+                most, seconds = self._pace if source is near else ALL_AT_ONCE
+                if not (data := source.recv(most)):
+                    break
+                time.sleep(seconds)
+                is_whole.wait()
                 target.sendall(data)
-            self._is_whole.wait()
+            is_whole.wait()
             target.shutdown(socket.SHUT_WR)
 
 
