@@ -6,16 +6,17 @@ import math
 from pathlib import Path
 from typing import Any
 
-from qgis.core import QgsCoordinateReferenceSystem, QgsMimeDataUtils, QgsProject
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMessageLog, QgsMimeDataUtils, QgsProject
 from qgis.gui import QgisInterface, QgsCustomDropHandler, QgsMapTool
-from qgis.PyQt.QtCore import QMimeData, QObject, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtCore import QEvent, QMimeData, QObject, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
 from ...robot_bridge.core.messages.positions import AlarmLimits
 from ...robot_bridge.core.reconnection import FleetGateways
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
-from ..control.messages import OUTAGE, Level, MessageBar, request_topic
+from ..control.messages import OUTAGE, TITLE, Level, MessageBar, request_topic
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState
 from ..layers.crs import own_frame
@@ -33,8 +34,9 @@ from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
 from ..settings.profile import KnownGateways
 from ..ui.actions import Actions
+from ..ui.dialogs import QuestionDialog
 from ..ui.errors import FleetError, Part, remove_all
-from ..ui.language import tr, tr_count
+from ..ui.language import first_of, tr, tr_count
 from .alarms.alarm_panel import AlarmPanel
 from .alarms.board import alarm_colour
 from .alarms.watch import AlarmBar, AlarmWatch
@@ -46,6 +48,8 @@ from .queue import PauseActions, QueueEdits
 MENU = "Fleet Supervisor"
 CONNECTING = request_topic("hello", "")
 """Topic of requests made with Connect."""
+MOST_ASKED = 3
+"""Unanswered requests that are named to an operator who quits."""
 
 
 class FleetWindow(QObject):
@@ -65,6 +69,7 @@ class FleetWindow(QObject):
         """Parts that :meth:`remove` removes, the last one first."""
         self.notices = self._add(MessageBar(iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
+        self._add(QuitGuard(iface.mainWindow(), self.desk.orders, self))
         self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
         self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
@@ -96,6 +101,12 @@ class FleetWindow(QObject):
     def remove(self) -> None:
         """Remove every part from the window and wait for the connection's threads."""
         self.desk.shut_down()
+        if asked := self.desk.orders.unanswered:
+            text = tr(
+                "Closed before the gateway answered, so it may be done or not: {asked}",
+                asked="; ".join(asked),
+            )
+            QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Critical)
         for tool in self._tools.values():
             self._put_away(tool)
             tool.deleteLater()
@@ -247,6 +258,58 @@ class FleetWindow(QObject):
             self.dock.banner.changed.connect(dialog.show_state)
             dialog.show_state(self.dock.banner.text())
             dialog.open()
+
+
+class QuitGuard(QObject):
+    """Asks whoever closes QGIS while the gateway has not answered what was asked of it.
+
+    :meth:`remove` undoes the constructor.
+    """
+
+    def __init__(self, window: QMainWindow, requests: RequestTracker, parent: QObject):
+        super().__init__(parent)
+        self._window, self._requests = window, requests
+        self._is_confirmed = False
+        window.installEventFilter(self)
+
+    def remove(self) -> None:
+        """Ask no more."""
+        self._window.removeEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() != QEvent.Type.Close or self._is_confirmed:
+            return False
+        asked = self._requests.unanswered
+        if asked:
+            event.ignore()
+            self._ask(asked)
+        return bool(asked)
+
+    def _ask(self, asked: list[str]) -> None:
+        dialog = QuestionDialog(
+            "fleet_quit_dialog",
+            tr("Quit before the gateway has answered?"),
+            ("fleet_quit_confirm", tr("Quit all the same")),
+            ("fleet_quit_stay", tr("Stay")),
+            is_safe=True,
+            parent=self._window,
+        )
+        dialog.add_text(
+            tr(
+                "The gateway has not answered yet: {asked}. Who quits now does not learn whether it is done, "
+                "and what is not sent yet never is.",
+                asked="; ".join(first_of(asked, MOST_ASKED)),
+            )
+        )
+        dialog.lay_out()
+        dialog.accepted.connect(self._quit)
+        dialog.open()
+
+    def _quit(self) -> None:
+        # QGIS may ask in turn whether to save, and stay.
+        self._is_confirmed = True
+        self._window.close()
+        self._is_confirmed = False
 
 
 class WindowAlarms(QObject):

@@ -7,7 +7,7 @@ import time
 
 import pytest
 from fleet_supervisor.plugin.plugin import FleetPlugin
-from qgis.core import QgsApplication, QgsProject, QgsVectorLayer
+from qgis.core import Qgis, QgsApplication, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QAction, QLineEdit
 
 from tests.support.left_behind import connected_to, left_behind
@@ -51,6 +51,20 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
         assert plugin.window is None
         assert left_behind(iface) == before
     assert iface.canvas.mapTool() is before_tool
+
+
+def test_what_is_not_answered_when_the_plugin_goes_stands_in_qgis_log(iface, gateway, make_robot, wait):
+    gateway.show(make_robot("r1"))
+    gateway.mute.add("abort_all")
+    plugin = connected(iface, gateway, wait)
+    plugin.window.desk.abort_all()
+    wait(lambda: gateway.requests_of("abort_all"), 3)
+    logged = []
+    log = QgsApplication.messageLog().messageReceived[str, str, Qgis.MessageLevel]
+    log.connect(note := lambda text, *_: logged.append(text))
+    plugin.unload()
+    log.disconnect(note)
+    assert "Closed before the gateway answered, so it may be done or not: ABORT ALL" in logged
 
 
 def test_qgis_keeps_no_connection_to_what_was_unloaded(iface, gateway, make_robot, wait):

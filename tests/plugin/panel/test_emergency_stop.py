@@ -51,6 +51,36 @@ def stopped(at_desk, wait):
     return at_desk
 
 
+def test_where_no_link_is_tried_any_more_the_robots_own_stops_are_named(plugin, gateway, iface, wait):
+    gateway.protocol = 2
+    plugin.window.desk.open_link(gateway.url, "anna")
+    wait(lambda: plugin.window.desk.state.link.phase.value == "failed", what="the end of all attempts")
+    press_stop(plugin.window)
+    (text,) = (text for text in iface.texts() if "EMERGENCY STOP was NOT sent" in text)
+    assert "use the robot's own emergency stop" in text and banner(plugin.window) == ""
+
+
+def test_who_quits_before_the_gateway_has_answered_is_asked(at_desk, gateway, iface, wait):
+    gateway.mute.add("emergency_stop")
+    press_stop(at_desk)
+    wait(lambda: gateway.requests_of("emergency_stop"), what="the stop")
+    iface.close()
+    asked = iface.findChild(QDialog, "fleet_quit_dialog")
+    assert iface.isVisible() and asked.isVisible()
+    assert any("not answered yet: EMERGENCY STOP." in label.text() for label in asked.findChildren(QLabel))
+    asked.reject()
+    assert iface.isVisible()
+    iface.close()
+    asked = [one for one in iface.findChildren(QDialog, "fleet_quit_dialog") if one.isVisible()]
+    QTest.mouseClick(asked[0].findChild(QPushButton, "fleet_quit_confirm"), LEFT)
+    assert not iface.isVisible()
+
+
+def test_who_quits_when_all_is_answered_is_not_asked(stopped, iface):
+    iface.close()
+    assert not iface.isVisible() and iface.findChild(QDialog, "fleet_quit_dialog") is None
+
+
 def test_on_a_low_screen_the_window_does_not_grow_and_what_stops_robots_stays_in_view(stopped, iface, wait):
     body = stopped.dock.widget()
     body.findChild(QToolButton, "fleet_access_button").setChecked(True)
