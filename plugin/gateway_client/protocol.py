@@ -33,7 +33,6 @@ OVERRIDABLE = -32007
 """The error code of a change to an object that has changed since it was read; the newer state is included."""
 
 NEWEST_COUNTS = {
-    "emergency": safety.emergency_report,
     "suspensions": administration.suspensions_report,
     "links": links.links_report,
     "geofence": safety.geofence_report,
@@ -96,9 +95,13 @@ class RequestOutbox:
         if order.key in self._waiting:
             return False
         if stops_robots(order):
-            self._void |= {key for key, one in self._waiting.items() if _is_made_void(one, order)}
+            self.overtake(order.params.get("robot"))
         self._waiting[order.key] = order
         return True
+
+    def overtake(self, robot: str | None) -> None:
+        """Have nothing repeated that waits and would set ``robot`` in motion, or any where that is None."""
+        self._void |= {key for key, one in self._waiting.items() if _is_made_void(one, robot)}
 
     def answered(self, key: str) -> OperatorRequest | None:
         """Remove and return the request that was answered; None when it was answered before."""
@@ -155,12 +158,12 @@ def _holds_on(order: OperatorRequest, ground: RequestGround) -> bool:
     return order.ground is None or order.ground.is_same(ground)
 
 
-def _is_made_void(order: OperatorRequest, stop: OperatorRequest) -> bool:
-    """Tell whether ``order`` would set in motion what ``stop``, asked for after it, is to stop."""
+def _is_made_void(order: OperatorRequest, stopped: str | None) -> bool:
+    """Tell whether ``order`` would set in motion what a stop of ``stopped`` that came after it stops."""
     request = DESK_REQUESTS.get(order.method)
     if request is None or stops_robots(order):
         return False
-    return commands.is_overtaken(request, order.params.get("robot"), stop.params.get("robot"))
+    return commands.is_overtaken(request, order.params.get("robot"), stopped)
 
 
 class GatewayProtocol:
@@ -195,6 +198,8 @@ class GatewayProtocol:
         """Orders without an answer, by their keys: those sent on this link, and on one that was lost."""
         self._gateway_ahead: float | None = None
         """Seconds by which the gateway's clock for deadlines is ahead of ours; None where it has none."""
+        self._stop: str | None = None
+        """The id of the last known emergency stop, whoever made it."""
         self._ground: RequestGround | None = None
         """The context of places and names at the gateway; None until one has greeted."""
         self._view: dict[str, Any] | None = None
@@ -319,6 +324,8 @@ class GatewayProtocol:
             self._buffer.add(site=site)
         elif method == "gateways":
             self._learn(params["gateways"])
+        elif method == "emergency":
+            self._learn_stop(safety.emergency_report(params))
         elif method in NEWEST_COUNTS:
             self._buffer.add(**{method: NEWEST_COUNTS[method](params)})
         elif method in EACH_COUNTS:
@@ -395,7 +402,7 @@ class GatewayProtocol:
         self._buffer.add(site=site, greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
-            self._buffer.add(emergency=safety.emergency_report(result["emergency"]))
+            self._learn_stop(safety.emergency_report(result["emergency"]))
         self._choose_view(result)
         self._set_clock(result)
         self.ready = True
@@ -428,6 +435,13 @@ class GatewayProtocol:
         if now is not None:
             _check_number("the gateway's clock", now)
             self._gateway_ahead = now - self._clock.steady()
+
+    def _learn_stop(self, report: safety.EmergencyReport) -> None:
+        """Apply a report of the emergency stop; a new one, cleared by now or not, makes void what waits."""
+        if report.stop != self._stop:
+            self._outbox.overtake(None)
+        self._stop = report.stop
+        self._buffer.add(emergency=report)
 
     def _learn(self, reported: object) -> None:
         """Learn other addresses of the fleet, and have them kept for the next session."""
@@ -478,7 +492,7 @@ class GatewayProtocol:
             return []
         result = message.get("result") or {}
         if order.method in (safety.EmergencyStop.method, safety.ClearEmergencyStop.method):
-            self._buffer.add(emergency=safety.emergency_report(result))
+            self._learn_stop(safety.emergency_report(result))
         if order.method == GetClosures.method:
             self._buffer.add(closures=roads.closures_report(result))
         self._buffer.add(

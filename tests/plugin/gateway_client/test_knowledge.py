@@ -233,6 +233,28 @@ def test_what_a_robot_may_drive_off_on_has_a_deadline_by_the_gateways_clock(site
         greeting({"now": "noon"})
 
 
+def test_an_emergency_stop_of_another_desk_makes_void_what_waited_for_the_link_meanwhile(site):
+    buffer, addresses = UpdateBuffer(), GatewayAddresses("ws://here/desk")
+    protocol = GatewayProtocol("anna", 10.0, addresses, buffer, ManualClock(uptime=50.0))
+
+    def greeting(stop):
+        (hello,) = protocol.begin()
+        emergency = {"in_force": False, "stop": stop}
+        result = {"protocol": 1, "site": to_json(site), "emergency": emergency}
+        answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"], "result": result}
+        return [json.loads(text)["method"] for text in protocol.receive(json.dumps(answer))]
+
+    greeting("stop-0001")
+    for key, method in (("go", "send"), ("clear", "clear_emergency_stop"), ("remove", "remove_task")):
+        protocol.submit(OperatorRequest(key, method, {"robot": "r1"}, requested_at=49.0))
+    assert greeting("stop-0001")[-3:] == ["send", "clear_emergency_stop", "remove_task"]
+    # By now it was made, and cleared by a supervisor.
+    again = greeting("stop-0002")
+    assert again[-1] == "remove_task" and "send" not in again and "clear_emergency_stop" not in again
+    void = [answer.order.key for answer in buffer.collect().answers]
+    assert void == ["go", "clear"]
+
+
 def test_a_refusal_sets_the_clock_for_deadlines_right(site):
     mailbox, clock = UpdateBuffer(), ManualClock(uptime=50.0)
     protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, clock)
