@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from ...core.clock import Clock
-from ...core.errors import DataRefusedError, LockedError
+from ...core.errors import DataRefusedError
 from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
 from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
@@ -224,16 +224,10 @@ class TrajectoryWriter:
     async def save(self, *robots: str) -> None:
         """Store tracks and current poses, those of ``robots`` in any case; raises StoreError.
 
-        Whoever waits meanwhile for robots of his own has them stored together with all others, or alone where
-        somebody else has locked what those need.
+        Several callers that wait meanwhile are served by one write.
         """
         self._unsaved.update(robots)
-        try:
-            await to_its_end(self._save(self._begun if robots else None))
-        except LockedError:
-            if not robots:
-                raise
-            await to_its_end(self._save_alone(robots))
+        await to_its_end(self._save(self._begun if robots else None))
 
     async def write_with(self, work: Callable[..., None], *arguments: Any, lasting: bool = False) -> None:
         """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
@@ -255,12 +249,6 @@ class TrajectoryWriter:
                 await self._write_or_give_back(fixes)
                 fixes = []
                 await write(work, *arguments, fixes)
-            except LockedError:
-                # Robots are answered while somebody packs the table of positions, which wait for that.
-                self._recorder.give_back(fixes)
-                if not fixes:
-                    raise
-                await write(work, *arguments, fixes := [])
             except Exception:
                 self._recorder.give_back(fixes)
                 raise
@@ -300,14 +288,6 @@ class TrajectoryWriter:
                 self._jotted.clear()
                 if last and not taken_back:
                     return
-
-    async def _save_alone(self, robots: Sequence[str]) -> None:
-        async with self._writing:
-            known = [stored_robots.row(self._robots.get(name)) for name in robots if name in self._robots]
-            written = await self._write(known, [])
-            self._removed |= written.removed
-            self._stored.update(row[0] for row in known if row[0] not in written.refused)
-            self._stored -= written.removed
 
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
         """Store robots and positions; only data that the database refuses is left out."""

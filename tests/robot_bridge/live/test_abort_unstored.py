@@ -7,7 +7,6 @@ import sqlite3
 
 import pytest
 
-from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.robots.robot_wires import SqlRobot
 from tests.support.wire import RefusedError
@@ -139,35 +138,3 @@ def test_what_one_session_has_locked_keeps_nobody_from_what_is_not_locked(served
     driven.say(driven.wait_for("SetPosEnd", 30.0)["id"])
     desk.wait_for_step("target-it-2", "acknowledged")
     assert len(desk.ask("get_commands", {"limit": 5})["commands"]) == 2
-
-
-def test_a_robot_comes_in_while_no_position_can_be_stored(served):
-    """To pack a large table takes an administrator's session minutes."""
-    other = served.robot("r1")
-    other.plug_in(1)
-    with tables_locked(served, "trajectories"):
-        other.tell("SendPos", {"x": 40.0, "y": 8.0, "theta": 0.5, "v": 0.0})
-        robot = served.robot("r2")
-        robot.plug_in(2)
-        robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
-        desk = served.desk()
-        desk.ask("subscribe", {"rate": 50})
-        desk.wait_for_robots("r2")
-
-
-def test_a_robot_on_sql_is_answered_while_no_position_can_be_stored(served, reader):
-    with tables_locked(served, "trajectories"):
-        reader.say("SendPos", x=20.0, y=8.0, theta=0.5, v=0.0)
-        reader.ask("GetMap", {"x": 20.0, "y": 8.0, "area": 400.0})
-    wait_until(lambda: served.sql("select robot from trajectories where robot = 's1'"), 30.0)
-
-
-def test_a_robot_comes_in_while_the_row_of_another_is_locked(served):
-    other = served.robot("r1")
-    other.plug_in(1)
-    other.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
-    with contextlib.closing(DatabaseClient(served.database)) as administrator:
-        administrator.sql("begin")
-        assert administrator.sql("select name from robots where name = 'r1' for update") == [("r1",)]
-        other.tell("SendPos", {"x": 20.1, "y": 8.0, "theta": 0.5, "v": 0.1})
-        served.robot("r2").plug_in(2)
