@@ -17,7 +17,7 @@ from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencySt
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
-from ..gateway_client.protocol import REPEAT_WITHIN
+from ..gateway_client.protocol import REPEAT_WITHIN, is_made_void
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
@@ -128,6 +128,8 @@ class PendingRequest:
     requested_at: float
     draft: PendingCommand | None = None
     stops: bool = False
+    is_voidable: bool = False
+    """Whether a stop asked for meanwhile makes it void."""
     slow_notice: str = ""
     topics: tuple[Topic, ...] = ()
     """The subjects of a refusal."""
@@ -350,7 +352,10 @@ class RequestTracker(QObject):
         except NotSentError as error:
             text = tr("{words} was NOT sent: {error}", words=words, error=error)
             raise NotSentError(text, topics) from error
-        self._pending[order.key] = PendingRequest(words, order.requested_at, draft, topics=topics)
+        is_voidable = is_made_void(order, None)
+        self._pending[order.key] = PendingRequest(
+            words, order.requested_at, draft, is_voidable=is_voidable, topics=topics
+        )
         return order.key
 
 
@@ -362,10 +367,18 @@ def _slow_notice(pending: PendingRequest) -> str:
             words=pending.words,
             seconds=SLOW_AFTER,
         )
+    if pending.is_voidable:
+        return tr(
+            "{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is "
+            "repeated if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; "
+            "it is never done twice.",
+            words=pending.words,
+            seconds=SLOW_AFTER,
+            limit=REPEAT_WITHIN,
+        )
     return tr(
         "{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated "
-        "if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; it is never done "
-        "twice.",
+        "if the link is back within {limit:g} s; it is never done twice.",
         words=pending.words,
         seconds=SLOW_AFTER,
         limit=REPEAT_WITHIN,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import threading
 from types import ModuleType
 from typing import Any
@@ -87,8 +86,12 @@ class GatewayClient:
             wait = min(wait, STOP_TRIES_EVERY)
         due = steady_time() + wait
         self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
-        with contextlib.suppress(asyncio.TimeoutError):
-            await asyncio.wait_for(self._stop_asked.wait(), wait)
+        # Not wait_for: before Python 3.12 that may lose a cancellation.
+        asked = asyncio.ensure_future(self._stop_asked.wait())
+        try:
+            await asyncio.wait({asked}, timeout=wait)
+        finally:
+            asked.cancel()
 
     def _has_refused(self, failure: GatewayLinkError) -> bool:
         """Record and report that a gateway refuses for good; return true where there is no other to try."""

@@ -359,8 +359,12 @@ class FleetState(QObject):
 
     def _collect(self) -> None:
         now = self.clock.steady()
-        if self._is_running and now - self._collected_at > STANDSTILL_S:
-            self._standstill, self._caught_up_at = now - self._collected_at, now + CATCHING_UP_S
+        late = now - self._collected_at
+        if self._is_running and late > STANDSTILL_S:
+            self._standstill, self._caught_up_at = late, now + CATCHING_UP_S
+        elif now - late < self._caught_up_at and late > LATE_S:
+            # Applying and painting what came meanwhile took so long that older clicks may still wait.
+            self._caught_up_at = now + CATCHING_UP_S
         self._collected_at = now
         self.merge(self._source.collect_updates())
 

@@ -7,8 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMessageLog, QgsMimeDataUtils, QgsProject
-from qgis.gui import QgisInterface, QgsCustomDropHandler, QgsMapTool
-from qgis.PyQt.QtCore import QEvent, QMimeData, QObject, Qt, QTimer, pyqtSignal
+from qgis.gui import (
+    QgisInterface,
+    QgsApplicationExitBlockerInterface,
+    QgsCustomDropHandler,
+    QgsMapTool,
+)
+from qgis.PyQt.QtCore import QMimeData, QObject, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
 from ...robot_bridge.core.messages.positions import AlarmLimits
@@ -69,7 +74,7 @@ class FleetWindow(QObject):
         """Parts that :meth:`remove` removes, the last one first."""
         self.notices = self._add(MessageBar(iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
-        self._add(QuitGuard(iface.mainWindow(), self.desk.orders, self))
+        self._add(QuitGuard(iface, self.desk.orders))
         self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
         self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
@@ -260,33 +265,36 @@ class FleetWindow(QObject):
             dialog.open()
 
 
-class QuitGuard(QObject):
-    """Asks whoever closes QGIS while the gateway has not answered what was asked of it.
+class QuitGuard(QgsApplicationExitBlockerInterface):
+    """Asks for confirmation when QGIS is left, in whatever way, before the gateway has answered a request.
 
     :meth:`remove` undoes the constructor.
     """
 
-    def __init__(self, window: QMainWindow, requests: RequestTracker, parent: QObject):
-        super().__init__(parent)
-        self._window, self._requests = window, requests
+    def __init__(self, iface: QgisInterface, requests: RequestTracker):
+        super().__init__()
+        self._iface, self._requests = iface, requests
+        self._window: QMainWindow = iface.mainWindow()
+        self._dialog: QuestionDialog | None = None
         self._is_confirmed = False
-        window.installEventFilter(self)
+        iface.registerApplicationExitBlocker(self)
 
     def remove(self) -> None:
-        """Ask no more."""
-        self._window.removeEventFilter(self)
+        """Ask no more, and close the question."""
+        self._iface.unregisterApplicationExitBlocker(self)
+        if self._dialog is not None:
+            self._dialog.reject()
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() != QEvent.Type.Close or self._is_confirmed:
-            return False
+    def allowExit(self) -> bool:
         asked = self._requests.unanswered
-        if asked:
-            event.ignore()
+        if self._is_confirmed or not asked:
+            return True
+        if self._dialog is None:
             self._ask(asked)
-        return bool(asked)
+        return False
 
     def _ask(self, asked: list[str]) -> None:
-        dialog = QuestionDialog(
+        self._dialog = dialog = QuestionDialog(
             "fleet_quit_dialog",
             tr("Quit before the gateway has answered?"),
             ("fleet_quit_confirm", tr("Quit all the same")),
@@ -302,8 +310,12 @@ class QuitGuard(QObject):
             )
         )
         dialog.lay_out()
+        dialog.finished.connect(self._forget_dialog)
         dialog.accepted.connect(self._quit)
         dialog.open()
+
+    def _forget_dialog(self) -> None:
+        self._dialog = None
 
     def _quit(self) -> None:
         # QGIS may ask in turn whether to save, and stay.

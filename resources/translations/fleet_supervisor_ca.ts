@@ -1489,6 +1489,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s; it is never done twice.</source>
+            <translation>{words}: la passarel·la no ha respost en {seconds:g} s, de manera que potser no ha arribat. Es repeteix si l'enllaç torna en {limit:g} s; mai no es fa dues vegades.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: la passarel·la no ha respost des de fa {seconds:g} s, així que potser no ha arribat. Es repeteix quan torna l'enllaç; mai no es fa dues vegades.</translation>
         </message>

@@ -1489,6 +1489,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s; it is never done twice.</source>
+            <translation>{words}: la pasarela no ha respondido en {seconds:g} s, así que quizá no haya llegado. Se repite si el enlace vuelve en {limit:g} s; nunca se hace dos veces.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: la pasarela no ha respondido desde hace {seconds:g} s, así que quizá no haya llegado. Se repite cuando vuelve el enlace; nunca se hace dos veces.</translation>
         </message>

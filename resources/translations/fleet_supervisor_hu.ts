@@ -1481,6 +1481,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated if the link is back within {limit:g} s; it is never done twice.</source>
+            <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Megismétlődik, ha a kapcsolat {limit:g} s-on belül visszatér; kétszer sosem hajtódik végre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Ha a kapcsolat helyreáll, megismétlődik; kétszer sosem hajtódik végre.</translation>
         </message>

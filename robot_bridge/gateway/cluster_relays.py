@@ -118,6 +118,9 @@ class ClusterRelays:
         await self._fleet.suspensions.follow()
         if self._cluster.membership.leads:
             await self._fleet.suspensions.update()
+        else:
+            # Robots on SQL are the leader's: what others wait for is an offence of the moment.
+            self._fleet.database.offences.drain()
 
     async def _forget_old(self) -> None:
         await self.requests.forget()

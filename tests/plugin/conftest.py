@@ -269,6 +269,7 @@ class Window(QMainWindow):
         self.locator = QgsLocator(self)
         self.options_pages = []
         self.drop_handlers = []
+        self.exit_blockers = []
         self.is_settled = lambda: True
         """Whether what a click begins has come to its end."""
         self._pan_tool = QgsMapToolPan(self.canvas)
@@ -320,6 +321,16 @@ class Window(QMainWindow):
 
     def unregisterCustomDropHandler(self, handler):
         self.drop_handlers.remove(handler)
+
+    def registerApplicationExitBlocker(self, blocker):
+        self.exit_blockers.append(blocker)
+
+    def unregisterApplicationExitBlocker(self, blocker):
+        self.exit_blockers.remove(blocker)
+
+    def closeEvent(self, event):
+        # As QGIS does, however it is left.
+        event.setAccepted(all(blocker.allowExit() for blocker in self.exit_blockers))
 
     def texts(self) -> list[str]:
         """What hangs in the message bar."""

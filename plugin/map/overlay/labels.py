@@ -356,6 +356,7 @@ class NamesPainter:
         self._beside = np.empty((0, 2))
         """The parts of the atlas to paint, the index of their text, and their offsets."""
         self._chosen_at = -np.inf
+        self._has_waited = False
         self._screen: Screen | None = None
         self._names: list[str] = []
         self._lengths = np.empty(0)
@@ -378,10 +379,13 @@ class NamesPainter:
         """
         robots = placed.scene.robots
         now = placed.scene.now
-        is_due = abs(now - self._chosen_at) >= CHOOSE_EVERY and not may_wait
+        is_due = abs(now - self._chosen_at) >= CHOOSE_EVERY
+        if is_due and may_wait and not self._has_waited:
+            # For one frame at most: of frames that come slowly each has as much to do.
+            is_due, self._has_waited = False, True
         if is_due or screen != self._screen or self._are_others(robots):
             self._named = self._chosen(placed, view, screen, taken)
-            self._chosen_at, self._screen = now, screen
+            self._chosen_at, self._screen, self._has_waited = now, screen, False
             self._written = [texts(robots, row) for row in self._named.tolist()]
             self._widths = np.array([_width(parts) for parts in self._written])
             self._wait_for_pictures(screen.ratio)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import logging
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+
+from sqlalchemy import Connection
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
@@ -122,7 +123,7 @@ class CommandRequests:
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):
             sent = [order.robot for order in orders if self._send_unstored(order)]
-            sent += await self._write_unstored(orders)
+            sent += await self._write_unstored(orders, storing)
         try:
             return await storing
         except StoreError as error:
@@ -137,18 +138,32 @@ class CommandRequests:
                 is_sent |= link(order.robot, f"abort-{order.command}")
         return is_sent
 
-    async def _write_unstored(self, orders: list[CommandOrder]) -> list[str]:
-        """Write Aborts without their commands for robots on SQL; return those for which that was done."""
-        readers = [order for order in orders if self._robots.get(order.robot).link == "sql"]
+    async def _write_unstored(
+        self, orders: list[CommandOrder], storing: asyncio.Future[list[CommandReport]]
+    ) -> list[str]:
+        """Write Aborts without their commands for robots on SQL; return those for which that was done.
+
+        Once ``storing`` has succeeded nothing is written: it would withdraw what was asked for since.
+        """
+
+        def write(connection: Connection, robots: Sequence[str], withdrawn: Sequence[str]) -> None:
+            if not (storing.done() and not storing.cancelled() and storing.exception() is None):
+                persistence.write_bare_aborts(connection, robots, withdrawn, emergency=False)
+
+        readers = [
+            order
+            for order in orders
+            # Some may have been removed meanwhile, or are another gateway's.
+            if order.robot in self._robots and self._robots.get(order.robot).link == "sql"
+        ]
         done: list[str] = []
         for withdrawn in ((), ORDERS):
             # One that aborts a single command withdraws no other.
             robots = [order.robot for order in readers if (order.aborts is None) == bool(withdrawn)]
-            work = partial(persistence.write_bare_aborts, emergency=False)
             try:
                 if robots:
                     # What keeps the commands from being stored may keep the other connection waiting.
-                    await self._database.run_aside(work, robots, withdrawn)
+                    await self._database.run_aside(write, robots, withdrawn)
                     done += robots
             except StoreError as error:
                 log.error("Aborts of %s cannot be written: %s", listed_names(robots), error)

@@ -20,6 +20,7 @@ from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import commands
+from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from . import active_command, persistence
@@ -126,6 +127,9 @@ class CommandService(CommandReader):
         if sa_id in self._open.queued:
             await to_its_end(self._hand_over(robot, sa_id))
             known = any(command.sa_id == sa_id for command in self._open.of(robot))
+        elif self._unstored.of([robot]):
+            # A path for a command that has begun: it must not follow the Abort, now or on a later connection.
+            known = await to_its_end(self._outlives_abort(robot, sa_id))
         else:
             await self._held.confirm([robot])
         if not self._fence.may_command(robot):
@@ -331,9 +335,20 @@ class CommandService(CommandReader):
         async with self._turns.of([robot]):
             await self.drafting.consider_way(path)
             async with self._held.of([robot]):
+                # An Abort that is not stored yet ends the task.
+                await self._store_unstored([robot])
                 self.drafting.check_way(robot, task, path)
                 await self._held.run([robot], write)
                 self._events.publish(OutboxChanged(robot))
+
+    async def _outlives_abort(self, robot: str, sa_id: int) -> bool:
+        """Store the robot's Aborts, and withdraw message ``sa_id`` if there were any to be sent."""
+        async with self._turns.of([robot]), self._held.of([robot]):
+            await self._store_unstored([robot])
+            if not self.awaits_any_abort(robot):
+                return True
+            await self._held.run([robot], answers.remove_answers, [sa_id])
+            return False
 
     async def _hand_over(self, robot: str, sa_id: int) -> None:
         async with self._held.of([robot]):

@@ -17,7 +17,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import URL, Connection
+from sqlalchemy import URL, Connection, select
 
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
 from ...core.files import write_state, write_state_into
@@ -191,8 +191,8 @@ class StopWriter:
         self._database = database
         self._news = TroubleNews()
         self._owed: dict[str, StopRow] = {}
-        self._have_bare: dict[str, str] = {}
-        """robots that were sent a bare Abort, with the id of its stop."""
+        self._have_bare: dict[str, set[str]] = {}
+        """robots that were sent bare Aborts, with the ids of the stops."""
 
     @property
     def is_owing(self) -> bool:
@@ -230,8 +230,7 @@ class StopWriter:
         )
         issuing.add_done_callback(lambda done: done.cancelled() or done.exception())
         await asyncio.wait({issuing}, timeout=BARE_AFTER_S)
-        if not issuing.done():
-            await self._add_bare(stop, readers)
+        early = [] if issuing.done() else await self.add_bare(stop, readers)
         try:
             await issuing
             return True
@@ -243,7 +242,10 @@ class StopWriter:
             if self._news.has(stop.id, str(error)):
                 _explain(error, text)
         self._owed.update(dict.fromkeys(robots, stop))
-        await self._add_bare(stop, robots)
+        for robot in early:
+            # A motion that was being written meanwhile may have followed that Abort.
+            self._have_bare[robot].discard(stop.id)
+        await self.add_bare(stop, robots)
         is_listed = await self._list(stop)
         await self.write_owed()
         return is_listed
@@ -260,7 +262,7 @@ class StopWriter:
         for robot, stop in self._owed.items():
             by_stop.setdefault(stop, []).append(robot)
         for stop, robots in by_stop.items():
-            failed = await self._halve(sorted(robots), partial(self._issue, stop))
+            failed = await self._halve(sorted(robots), partial(self._issue, stop), self._database.run)
             for robot in robots:
                 error = failed.get(robot)
                 if error is None or await self._is_settled(stop, robot, error):
@@ -272,8 +274,8 @@ class StopWriter:
             return True
         if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
             return False
-        await self._add_bare(stop, [robot])
-        if self._have_bare.get(robot) != stop.id:
+        await self.add_bare(stop, [robot])
+        if stop.id not in self._have_bare.get(robot, ()):
             return False
         log.error("robot %r is sent an Abort that no command follows: look whether it stands", robot)
         return True
@@ -281,16 +283,22 @@ class StopWriter:
     async def _issue(self, stop: StopRow, robots: Sequence[str]) -> None:
         await self._commands.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
 
-    async def _add_bare(self, stop: StopRow, robots: Sequence[str]) -> None:
-        """Send a bare Abort to those of ``robots`` that were sent none of this stop; what fails is logged."""
-        without = [robot for robot in robots if self._have_bare.get(robot) != stop.id]
+    async def add_bare(self, stop: StopRow, robots: Sequence[str]) -> list[str]:
+        """Send a bare Abort to those of ``robots`` that were sent none of this stop, and return them.
+
+        Failures are logged.
+        """
+        without = [robot for robot in robots if stop.id not in self._have_bare.get(robot, ())]
         try:
-            failed = await self._halve(without, self._send_bare)
+            failed = await self._halve(without, self._send_bare, self._database.run_aside)
         except StoreError as error:
             if self._news.has("bare", str(error)):
                 _explain(error, "Aborts of an emergency stop cannot be stored")
-            return
-        self._have_bare.update((robot, stop.id) for robot in without if robot not in failed)
+            return []
+        sent = [robot for robot in without if robot not in failed]
+        for robot in sent:
+            self._have_bare.setdefault(robot, set()).add(stop.id)
+        return sent
 
     async def _send_bare(self, robots: Sequence[str]) -> None:
         # What keeps the stop itself from being stored may keep the other connection waiting.
@@ -307,9 +315,14 @@ class StopWriter:
         return False
 
     async def _halve(
-        self, robots: Sequence[str], write: Callable[[Sequence[str]], Awaitable[None]]
+        self,
+        robots: Sequence[str],
+        write: Callable[[Sequence[str]], Awaitable[None]],
+        run: Callable[[Callable[[Connection], None]], Awaitable[None]],
     ) -> dict[str, Exception]:
         """Write for all ``robots`` at once, else half by half; return the failed robots with their errors.
+
+        ``run`` is that of the connection which ``write`` uses.
 
         :raises StoreError: when it failed because the database cannot be used.
         """
@@ -319,13 +332,14 @@ class StopWriter:
             await write(robots)
             return {}
         except Exception as error:
-            await self._database.run(_use)
+            await run(_use)
             if len(robots) == 1:
                 if self._news.has(robots[0], str(error)):
                     _explain(error, f"the Abort of robot {robots[0]!r} cannot be stored")
                 return {robots[0]: error}
         half = len(robots) // 2
-        return {**await self._halve(robots[:half], write), **await self._halve(robots[half:], write)}
+        first, second = robots[:half], robots[half:]
+        return {**await self._halve(first, write, run), **await self._halve(second, write, run)}
 
 
 def abort_id(stop: StopRow, robot: str) -> str:
@@ -358,7 +372,7 @@ def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
 
 def _use(connection: Connection) -> None:
     """Check that the database can be used; raises where it cannot."""
-    emergency_stops.ids(connection, most=1)
+    connection.execute(select(1))
 
 
 def _in_plain_letters(stop: StopRow) -> StopRow:

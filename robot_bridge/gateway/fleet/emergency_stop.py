@@ -451,8 +451,13 @@ class EmergencyStops:
             stop = self._unstored[0]
             robots = self._robots.commanded()
             readers = [robot for robot in robots if self._robots.get(robot).link == "sql"]
-            if not await self._writer.write(stop, robots, readers):
-                self._unlisted.append(stop)
+            try:
+                if not await self._writer.write(stop, robots, readers):
+                    self._unlisted.append(stop)
+            except StoreError:
+                for pressed_again in self._unstored[1:]:
+                    await self._writer.add_bare(pressed_again, readers)
+                raise
             self._unstored.remove(stop)
             with log_and_continue(log, "noting that an emergency stop is stored"):
                 self._write_journal()

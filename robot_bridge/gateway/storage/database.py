@@ -346,7 +346,9 @@ class DatabaseWorker:
         if self._dialect.refuses_data(error):
             return DataRefusedError(f"database {self._where} refuses a value: {self._dialect.cause(error)}")
         if isinstance(error, DBAPIError) and self._dialect.kept_waiting(error):
-            self._locked_until = time.monotonic() + LOCKED_FOR_S
+            if not self._waits_briefly:
+                # Not prolonged by what waited briefly: once in so many seconds a lock has its time to end.
+                self._locked_until = time.monotonic() + LOCKED_FOR_S
             return LockedError(self._text(error))
         return StoreError(self._text(error))
 

@@ -107,7 +107,7 @@ def test_a_plan_is_not_there_before_it_was_held_against_a_road_that_was_closed_m
     drafts.run("a plan", drafts.draft, lambda task: (go_on.wait(60.0), plan)[1], told.append)
     close_road(far_cones, gateway, wait)
     go_on.set()
-    wait(lambda: drafts._look_at_made._slices._timer.isActive(), 15)
+    wait(lambda: drafts._made_check._slices._timer.isActive(), 15)
     assert drafts.busy and told == []
     held.let_go()
     wait(lambda: not drafts.busy, 5)

@@ -43,7 +43,7 @@ def test_arrows_and_names_are_not_chosen_in_the_same_frame(canvas, site):
     for tenths in range(1, 21):
         before = painter.hints, painter._names._written
         scene = scene_of(*robots, now=100.0 + tenths / 10)
-        overlay.show_scene(SceneTransformer().placed(scene, placed.placement))
+        overlay.show_scene(SceneTransformer().placed(scene, placed.transform))
         canvas.grab()
         if painter.hints is not before[0]:
             found.append(tenths)

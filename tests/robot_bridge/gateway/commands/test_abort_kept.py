@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.robots import SetPath
 from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands.persistence import insert_commands
+from robot_bridge.gateway.fleet.outbox import RequestOutcome
 
 LOST = pytest.mark.parametrize(
     ("error", "done"),
@@ -98,6 +100,26 @@ async def test_one_of_a_command_that_has_ended_by_then_is_forgotten(driving, los
     )
     await driving.send("next")
     assert driving.waiting("r1") == ["SetPosEnd"]
+
+
+async def test_no_path_for_what_the_robot_does_is_sent_behind_it(driving, lose):
+    path = SetPath([(20.0, 40.0), (60.0, 40.0)])
+    await driving.fleet.outboxes.finish([RequestOutcome("r1", answer=path)], [], acks=False)
+    ((sent,),) = driving.sql("select id from sa where robot = 'r1' and op = 'SetPath'")
+    await abort_in_vain(driving, lose)
+    lose(driving, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await driving.fleet.outboxes.mark_sending("r1", sent)
+    assert not await driving.fleet.outboxes.mark_sending("r1", sent)
+    assert driving.waiting("r1") == ["Abort"]
+
+
+async def test_no_other_way_is_led_to_what_it_ends(driving, lose):
+    await abort_in_vain(driving, lose)
+    path, written = SetPath([(20.0, 40.0), (60.0, 40.0)]), []
+    with pytest.raises(RefusedError):
+        await driving.fleet._commands.lead("r1", "command-far-r1", path, written.append)
+    assert written == [] and driving.waiting("r1") == ["Abort"]
 
 
 async def test_it_is_kept_for_as_long_as_the_database_takes_nothing(driving, lose):

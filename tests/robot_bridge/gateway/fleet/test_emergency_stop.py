@@ -400,6 +400,19 @@ async def test_a_stop_is_stored_before_it_is_cleared(two, control):
     assert Control(two).report.in_force is False
 
 
+async def test_a_stop_that_is_pressed_again_goes_out_over_sql_though_the_first_one_is_not_stored(
+    two, control
+):
+    await two.ready("r2", magic=2, link="sql")
+    two.client.break_table("emergency_stops")
+    aborts = []
+    for number in (1, 2, 3):
+        await control.stop(f"stop-000{number}")
+        aborts.append(two.waiting("r2").count("Abort"))
+    assert aborts[0] < aborts[1] < aborts[2]
+    two.client.mend_table("emergency_stops")
+
+
 async def test_two_stops_without_a_database_are_both_stored_when_it_is_back(two, control):
     two.client.break_table("emergency_stops")
     await control.stop("stop-of-ada")

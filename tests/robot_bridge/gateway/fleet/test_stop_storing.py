@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 
 import pytest
@@ -298,6 +299,43 @@ async def test_who_was_removed_is_owed_nothing_and_what_is_owed_when_it_is_over_
     assert storing_on.aborts("r3") == (1, 1)
 
 
+async def test_a_motion_that_was_written_behind_a_bare_abort_is_withdrawn(storing_on, monkeypatch):
+    monkeypatch.setattr(emergency_persistence, "BARE_AFTER_S", 0.01)
+    yard, has_abort = storing_on.yard, asyncio.Event()
+    run_aside = storing_on.database.run_aside
+
+    async def run_and_tell(work, *arguments):
+        await run_aside(work, *arguments)
+        has_abort.set()
+
+    async def fail_late(_orders, _also=None):
+        await has_abort.wait()
+        # As a target's transaction that had begun before the stop.
+        yard.sql("insert into sa (robot, op, params) values ('r1', 'SetPosEnd', '{\"x\": 1, \"y\": 2}')")
+        raise StoreError("locked")
+
+    storing_on.database.run_aside = run_and_tell
+    storing_on.book.issue = fail_late
+    storing_on.database.fails = lambda work, _: StoreError("locked") if work is emergency_stops.add else None
+    with pytest.raises(StoreError):
+        await storing_on.writer.write(STOP, ["r1", "r2"], ["r1"])
+    assert set(yard.waiting("r1")) == {"Abort"}
+    before = storing_on.aborts("r1")
+    for _ in range(3):
+        with pytest.raises(StoreError):
+            await storing_on.writer.write(STOP, ["r1", "r2"], ["r1"])
+    assert storing_on.aborts("r1") == before
+
+
+async def test_each_stop_is_sent_once_to_robots_that_hear_of_it_by_the_database(storing_on):
+    later = STOP._replace(id="stop-0002")
+    assert await storing_on.writer.add_bare(STOP, ["r1", "r2"]) == ["r1", "r2"]
+    assert await storing_on.writer.add_bare(later, ["r1"]) == ["r1"]
+    for stop in (STOP, later, STOP):
+        assert await storing_on.writer.add_bare(stop, ["r1"]) == []
+    assert storing_on.aborts("r1") == (2, 0) and storing_on.aborts("r2") == (1, 0)
+
+
 async def test_a_robot_that_is_removed_while_its_abort_is_written_is_no_trouble(storing_on):
     issue = storing_on.book.issue
 
@@ -314,7 +352,7 @@ async def test_a_robot_that_is_removed_while_its_abort_is_written_is_no_trouble(
 async def test_a_fleet_without_robots_stores_its_stop(storing_on):
     assert await storing_on.write(robots=[]) is True
     assert storing_on.stops() == [("stop-0001", "Ada", "smoke")]
-    assert await storing_on.writer._halve([], None) == {}
+    assert await storing_on.writer._halve([], None, None) == {}
 
 
 def test_only_what_sets_a_robot_in_motion_is_held_back():
