@@ -1,4 +1,4 @@
-"""The pending command: the draft that the operator is about to send, its changes, and as tasks of a queue."""
+"""The pending command: the operator's draft, its changes, and its conversion to tasks of a queue."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ class ValidationRunner(QObject):
     displaced = pyqtSignal(object, object)
     """Another draft was begun before the action on this one: the Draft, and the action."""
     found = pyqtSignal(object)
-    """The draft that was put on the map has been checked: the Draft, with its findings."""
+    """The draft that was put on the map has been checked: the PendingCommand, with its findings."""
 
     def __init__(self, board: PendingCommandModel, work: Work, parent: QObject | None = None):
         super().__init__(parent)
@@ -243,7 +243,8 @@ class TargetRoutes(QObject):
     """
 
     found = pyqtSignal(object)
-    """The way of a target that is off the map, but was sent before its way was known: the Draft."""
+    """The way of a target whose draft is no longer on the map, but was sent before its way was known: the
+    PendingCommand."""
 
     def __init__(
         self,
@@ -278,7 +279,7 @@ class TargetRoutes(QObject):
         return bool(line) and place is not None and math.dist(place, line[0]) > OUTDATED_M
 
     def seek_beside(self, draft: PendingCommand) -> None:
-        """Find the way of a target that is off the map; signal it with ``found``."""
+        """Find the way of a target whose draft is no longer on the map; :attr:`found` signals it."""
         query = self._ask(draft)
         if query is None:
             refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())

@@ -79,7 +79,7 @@ class GatewayClient:
             self._protocol.end()
 
     async def _wait_to_try(self, reason: str, wait: float) -> None:
-        """Wait until the next attempt is due; with a stop that is to be sent, that is soon."""
+        """Wait until the next attempt is due, which is soon if a stop must be sent."""
         # Of an event, some Pythons (3.9) find the loop when it is made.
         self._stop_asked = asyncio.Event()
         if self._protocol.has_stop:
@@ -341,7 +341,7 @@ class ConnectionThread(QObject):
         self._forget_ended()
 
     def _forget_ended(self) -> None:
-        """Keep of links that have ended what became of requests: another one may be open by now."""
+        """Keep the outcomes of requests on ended links: another link may be open by now."""
         for worker in [worker for worker in self._ending if worker.isFinished()]:
             self._ending.remove(worker)
             if worker.buffer is not self._buffer:

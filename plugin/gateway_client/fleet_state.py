@@ -472,7 +472,7 @@ class FleetState(QObject):
         self.site_changed.emit()
 
     def _is_another(self, site: SiteReport, *, is_greeting: bool) -> bool:
-        """Return whether the robots on ``site`` are others than those before.
+        """Return whether ``site`` has other robots than the site before.
 
         Two gateways may serve one site, for practice and for work, each with its own robots. A site chosen
         while the link is up is served to the same robots: commands, queues and an emergency stop continue.

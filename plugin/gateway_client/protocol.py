@@ -64,7 +64,7 @@ REPEAT_WITHIN = 30.0
 
 
 def stops_robots(order: OperatorRequest) -> bool:
-    """Tell whether an order stops robots at once: it goes before all others."""
+    """Return whether an order stops robots at once: it goes before all others."""
     request = DESK_REQUESTS.get(order.method)
     return request is not None and commands.stops_robots(request, order.params.get("op"))
 

@@ -130,7 +130,7 @@ _PURE = frozenset(
 )  # fmt: skip
 """Pure functions: equal arguments always give equal results."""
 _MOST_KNOWN = 10_000
-"""Values cached per cache: a city has few different values many times."""
+"""Values kept in one cache: a city repeats few different values many times."""
 UNKNOWN = object()
 
 

@@ -40,7 +40,7 @@ def has_features(features: LayerFeatureSource) -> bool:
 
 
 def is_empty(provider: str, stored: str, deleted: int = 0) -> bool:
-    """Return whether an unreadable-looking layer has no features but the ``deleted`` ones.
+    """Return whether a layer from which nothing can be read really has no features but the ``deleted`` ones.
 
     A layer whose file or database is gone, or damaged, since it was opened is still valid, has its count, and
     reads as empty. It is opened again, from any thread: then a layer emptied by another program since reports

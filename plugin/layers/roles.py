@@ -40,9 +40,9 @@ ROLE_PROPERTY = "fleet/role"
 
 @dataclass(frozen=True)
 class LayerExpressions:
-    """QGIS expressions of one layer; an empty one leaves the choice to the exporter.
+    """QGIS expressions of one layer; an empty one leaves the choice to the user who exports.
 
-    ``height`` gives metres from the foot up (of one riser for stairs), ``estimate`` an estimate
+    ``height`` gives metres from the foot up (of one riser for stairs), ``estimate`` the metres assumed
     where ``height`` gives none, such as three for each storey; ``semantics`` a label such as
     ``building,A5`` (of a road its surface, of a keepout its name), ``outdoor`` true or false, ``width`` the
     metres of a road or across a point of furniture, ``base`` the metres above the ground where an object

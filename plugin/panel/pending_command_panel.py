@@ -254,7 +254,7 @@ class PendingCommandActions(QObject):
         self._enable()
 
     def remove(self) -> None:
-        """Close its windows and drop the reference to the main window."""
+        """Close the coordinates dialog, and delete this object."""
         if self._coordinates is not None:
             self._coordinates.close()
             self._coordinates.deleteLater()

@@ -349,7 +349,7 @@ class TaskList(QTreeView):
         elif event.key() == keys.Key_Delete:
             self.remove_requested.emit(task)
         elif event.key() in (keys.Key_Return, keys.Key_Enter):
-            # Without Alt it shows the place: a slip must not make a robot drive off.
+            # Without Ctrl, Enter shows the place: a slip must not make a robot drive off.
             if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
                 self.first_requested.emit(task)
         else:

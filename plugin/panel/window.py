@@ -280,7 +280,7 @@ class QuitGuard(QgsApplicationExitBlockerInterface):
         iface.registerApplicationExitBlocker(self)
 
     def remove(self) -> None:
-        """Ask no more, and close the question."""
+        """Stop asking, and close the dialog."""
         self._iface.unregisterApplicationExitBlocker(self)
         if self._dialog is not None:
             self._dialog.reject()

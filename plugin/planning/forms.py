@@ -265,7 +265,7 @@ class RobotsModel(QAbstractTableModel):
         return True
 
     def show_robots(self, names: Sequence[str], there: Sequence[bool], settings: PlanSettings) -> None:
-        """Show the robots ``names``, ``there`` whether each can take part, with their ``settings``.
+        """Show the robots ``names`` with their ``settings``; ``there`` says whether each can take part.
 
         Only changes are signalled: with a thousand robots some come or go at any moment, and an open editor
         must not lose what is being typed.

@@ -79,7 +79,7 @@ class PlanTravel:
         """Return the ways between the places of ``job``, clear of its cones and of standing cones and robots.
 
         :raises CancelledError: here and by the ways once ``goes_on()`` is false; RoadsError when a place is
-        too far from every road; LayerReadingError for a layer of roads that cannot be read.
+            too far from every road; LayerReadingError for a layer of roads that cannot be read.
         """
         router = self._opened(goes_on)
         travel: Travel = StraightTravel(job)

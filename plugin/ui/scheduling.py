@@ -16,7 +16,7 @@ from .errors import FleetError
 
 # Long work in the window's thread is done in slices between which the window paints and handles the mouse.
 # QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
-# drawn, and the functions of QGIS that they call hold Python's lock as long as they run.
+# drawn, and the functions of QGIS that they call hold the GIL as long as they run.
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)

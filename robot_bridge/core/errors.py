@@ -17,7 +17,7 @@ class StoreError(BridgeError):
 
 
 class LockedError(StoreError):
-    """Somebody else had something locked that a transaction needed, which was not done."""
+    """A lock that a transaction needed is held by another session; nothing was done."""
 
 
 class DataRefusedError(StoreError):

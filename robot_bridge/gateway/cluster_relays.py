@@ -140,7 +140,7 @@ class ClusterRelays:
             self._owners_changed.set()
 
     def _led(self, name: str, work: Work, counters: Counters) -> Work:
-        """Return a work that runs ``work`` only while this gateway leads."""
+        """Return a coroutine function that runs ``work`` only while this gateway leads."""
 
         async def led() -> None:
             membership = self._cluster.membership

@@ -155,7 +155,7 @@ def _counter_readings(counters: Counters) -> Iterator[MetricReading]:
         yield MetricReading(f"robot_bridge_{name}", text, (label,), single(counter), counts=True)
 
 
-# --- Works that run as long as the gateway: failures are logged, counted and retried ---
+# --- Background work that runs as long as the gateway: failures are logged, counted and retried ---
 
 Work = Callable[[], Awaitable[None]]
 

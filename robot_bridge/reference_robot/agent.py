@@ -163,7 +163,7 @@ class Agent:
             self._apply_acknowledgement(answer)
             return None
         if isinstance(answer, messages.Abort) and self._admitted:
-            # A task at whose end it is has been reached, and is not aborted: reported before its OpAck.
+            # A task whose end the robot has reached counts as reached: its position is sent before the OpAck.
             self._sink.say(self._position())
         if id is not None and id in self._done:
             # The gateway has not received the outcome: it is reported again once all is done.

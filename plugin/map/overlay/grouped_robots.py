@@ -41,7 +41,7 @@ _BY_RANK = np.argsort(_URGENT)
 
 
 def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> Cells:
-    """Return the arrow at the map's border to a robot in ``state``, turned as in :func:`robot_atlas`."""
+    """Return the arrow to a robot beyond the border, turned as in :func:`.robots_painter.robot_atlas`."""
     side = cell(pixel_ratio, ARROW_SIZE)
     rim = SELECTED if is_chosen else PAPER
     return turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS)

@@ -337,9 +337,8 @@ class AlarmBoard:
     def _renew_text(self, one: ReportedAlarm) -> bool:
         """Update the text of an alarm from the gateway's report, and return whether it has changed.
 
-        The distance at which two robots pass changes all the time: the text keeps the one at the alarm's
-        begin,
-        or at the time when one of them became unsure, or sure again.
+        The distance at which two robots pass changes all the time: the text keeps the one from when the alarm
+        began, or from when one of them became unsure, or sure again.
         """
         alarm = self._alarms.get(one.key)
         if alarm is None or alarm.text == one.text or not (one.area or alarm.unsure != one.unsure):

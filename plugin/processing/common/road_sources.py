@@ -63,7 +63,7 @@ _LENGTHS = {
 
 @dataclass(frozen=True)
 class DrivingOptions:
-    """How paths are driven, which roads may be used, and the greatest distance of a place from one."""
+    """How paths are driven, which roads may be used, and the greatest distance of a place from one, m."""
 
     driving: Driving
     restrictions: Restrictions

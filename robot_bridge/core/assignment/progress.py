@@ -179,7 +179,7 @@ class PlanProgress:
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
 
     def is_finished(self, plan: ConePlan) -> bool:
-        """Tell whether every cone of ``plan`` is done or left out."""
+        """Return whether every cone of ``plan`` is done or left out."""
         out = {one.target.id for one in plan.left_out}
         return all(target.id in self.done or target.id in out for target in plan.targets)
 

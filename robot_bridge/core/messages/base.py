@@ -23,7 +23,7 @@ from urllib.parse import urlsplit
 
 # --- Size limits and ranges of robots' messages, in one place ---
 # The guide for integrators and the JSON Schemas say the same. Limits that a site may set are in the table
-# ``[limits]`` of its ``site.toml`` (:mod:`...sites.limit_settings`).
+# ``[limits]`` of its ``site.toml`` (:mod:`..sites.settings_tables`).
 
 LARGEST_MESSAGE = 65_536
 """bytes of a message on WebSocket, characters of ``params`` on SQL; an image may be larger."""
@@ -122,7 +122,7 @@ def check_texts(message: Any) -> None:
 
 
 def is_robot_name(name: str) -> bool:
-    """Tell whether ``name`` can name a robot."""
+    """Return whether ``name`` can name a robot."""
     return ROBOT_NAME.fullmatch(name) is not None
 
 
@@ -137,7 +137,7 @@ def check_robot_name(name: str) -> str:
 
 
 def is_gateway_address(address: str) -> bool:
-    """Tell whether a gateway can be reached at ``address``, ``ws://host:port`` or ``wss://``, and a path."""
+    """Return whether ``address`` is one of a gateway: ``ws://host:port`` or ``wss://``, and a path."""
     if len(address) > LONGEST_ADDRESS or not GATEWAY_ADDRESS.fullmatch(address):
         return False
     try:

@@ -14,7 +14,7 @@ from .safety import check_override, check_reason
 
 
 class CommandState(str, Enum):
-    """The state of a command (see :mod:`.command_life`)."""
+    """The state of a command (see ``gateway/commands/active_command.py``)."""
 
     QUEUED = "queued"
     DELIVERED = "delivered"
@@ -227,20 +227,20 @@ class AbortTask(DeskRequest[CommandReport]):
             base.check_robot_name(self.robot)
 
 
-# --- What a stop overtakes, on the way from the desk and at the gateway ---
+# --- Requests overtaken by a stop, on the way from the desk and at the gateway ---
 
 MOVING = (Priority.MOVE, Priority.MOVE_SEVERAL)
 
 
 def stops_robots(request: type[DeskRequest[Any]], op: str | None) -> bool:
-    """Tell whether a request stops robots at once; ``op`` is that of a ``send``, which may be an Abort."""
+    """Return whether a request stops robots at once; ``op`` is that of a ``send``, which may be an Abort."""
     return request.priority is Priority.STOP or (request is Send and op == Abort.__name__)
 
 
 def is_overtaken(request: type[DeskRequest[Any]], robot: str | None, stopped: str | None) -> bool:
-    """Tell whether a request for ``robot`` moves what a stop of ``stopped`` that came after it is to stop.
+    """Return whether a request for ``robot`` would start a motion that a later stop of ``stopped`` prevents.
 
-    None is every robot, or more than the one that is named. An Abort by ``send`` is for the caller to except.
+    None means every robot, or more than the one named. The caller must except an Abort by ``send``.
     """
     if request.priority not in MOVING:
         return False
@@ -248,7 +248,7 @@ def is_overtaken(request: type[DeskRequest[Any]], robot: str | None, stopped: st
     return several or robot is None or stopped is None or robot == stopped
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def command_report(values: dict[str, Any]) -> CommandReport:

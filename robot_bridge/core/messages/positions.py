@@ -22,7 +22,7 @@ from .base import (
 from .safety import PathDeclaration, RobotState
 
 # --- Positions as a table of numbers, for desks that show thousands of robots ---
-# A binary frame (:mod:`..core.position_frame`): a JSON-RPC notification ``positions`` whose params are
+# A binary frame (:mod:`..position_frame`): a JSON-RPC notification ``positions`` whose params are
 # :class:`PositionColumns`, and behind it each of its columns, one 64-bit float for each robot. Unknown values
 # are NaN. A column of :data:`POSITION_TEXTS` holds indices into ``words``. A link reports its robots to the
 # gateway in the same form.

@@ -261,7 +261,7 @@ class PauseQueue(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class PauseRobot(DeskRequest[QueueReport]):
-    """Let a robot stand until its queue is resumed; then it continues from where it is.
+    """Let a robot stand, whatever it does, until its queue is resumed; it continues from where it is then.
 
     It is sent Abort. Its present task waits at the head of its queue, which is paused: a task of the queue,
     or else one made of the SetPosEnd or SetPath that it was sent. Needs no revision; repeating it changes

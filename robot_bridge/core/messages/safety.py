@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from .base import DeskRequest, MessageError, Priority, Role, check_command_id, known_fields, one_line
 
-# --- How far the knowledge of a robot can be trusted ---
+# --- Freshness of the knowledge of a robot ---
 
 PathDeclaration = Literal["asks", "cones", "asks and cones"]
 """What a robot declared in Ready: ``asks_path``, ``path_cones``, or both."""
@@ -20,7 +20,7 @@ Ability = Literal["targets", "paths", "start", "cones", "map", "images"]
 
 
 class RobotState(str, Enum):
-    """How far the knowledge of a robot can be trusted (see :mod:`.liveness`)."""
+    """Freshness of the knowledge of a robot, by the age of its last message."""
 
     FRESH = "fresh"
     STALE = "stale"

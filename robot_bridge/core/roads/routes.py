@@ -54,7 +54,7 @@ class Route:
         return self.seconds_at(np.inf)
 
     def seconds_at(self, speed: float) -> float:
-        """Return the driving time at ``speed`` m/s at most, and nowhere faster than the road allows."""
+        """Return the driving time in seconds at ``speed`` m/s at most, and within the limits of the roads."""
         return float((self.lengths / np.minimum(self.network.edges.speed[self.edges], speed)).sum())
 
     @property

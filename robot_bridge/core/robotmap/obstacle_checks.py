@@ -392,7 +392,7 @@ def _inner_point(table: SegmentTable, rings: _Rings, k: int) -> NDArray[Any]:
 
 
 def _holds(table: SegmentTable, row: int, point: NDArray[Any]) -> bool:
-    """Tell whether the ring of an obstacle encloses ``point``, by the even-odd rule."""
+    """Return whether the ring of an obstacle encloses ``point``, by the even-odd rule."""
     at = table.of_obstacle(row)
     (ax, ay), (bx, by) = table.a[at].T, table.b[at].T
     x, y = point

@@ -15,7 +15,7 @@ from ..robotmap.window_index import cell_keys, level_counts, placed_in
 from .column_file import AT_ONCE, HALVES, ColumnFiles, RowFile
 from .geopackage import extras_text
 
-# --- Texts appended to columns, as read by :mod:`.texts` ---
+# --- Texts appended to columns, as read by :mod:`.column_file` ---
 
 _MOST_KNOWN = 8 << 20
 """approximate bytes of remembered texts, so that each is written once."""
@@ -236,7 +236,7 @@ def _within(codes: Codes, low: int, high: int) -> Codes:
     return codes[(codes >= np.uint64(low)) & (codes <= np.uint64(high - 1))]
 
 
-# --- Boxes sorted by cell on the disk, for a :class:`~...robotmap.grid.BoxGrid` ---
+# --- Boxes sorted by cell on the disk, for a :class:`~..robotmap.window_index.BoxGrid` ---
 
 _SAMPLED = 256
 """One key in so many of each run is sampled, to estimate the distribution of boxes."""

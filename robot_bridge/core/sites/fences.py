@@ -311,7 +311,7 @@ class Fences:
 
 
 def _are_within(areas: NDArray[Any], geometries: NDArray[Any], metres: float) -> NDArray[np.bool_]:
-    """Tell which geometries are within ``metres`` of their area, (n,) each; with 0 metres inside it."""
+    """Return which geometries are within ``metres`` of their area, (n,) bool; with 0 metres inside it."""
     import shapely
 
     found: NDArray[np.bool_] = (

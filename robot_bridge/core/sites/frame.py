@@ -75,7 +75,7 @@ class SiteBounds(NamedTuple):
     y_max: float
 
     def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies in the rectangle."""
+        """Return whether (x, y), metres in the site frame, lies in the rectangle."""
         return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
 
 
@@ -224,7 +224,7 @@ NEAR = 10_000.0
 
 
 def is_near(place: tuple[float, float], bounds: SiteBounds) -> bool:
-    """Tell whether (x, y), metres in the site frame, is on the site or beside it."""
+    """Return whether (x, y), metres in the site frame, is on the site or beside it."""
     x, y = place
     beside = bounds.x_min - x, x - bounds.x_max, bounds.y_min - y, y - bounds.y_max
     return max(beside) <= NEAR
@@ -251,7 +251,7 @@ class GpsTransform:
         return x, y
 
     def looks_swapped(self, lat: float, lon: float, bounds: SiteBounds) -> bool:
-        """Tell whether a position lies near a site's ``bounds`` with latitude and longitude swapped."""
+        """Return whether a position lies near a site's ``bounds`` with latitude and longitude swapped."""
         try:
             return abs(lon) <= 90 and is_near(self.place(lon, lat), bounds)
         except CrsError:

@@ -84,7 +84,7 @@ class Site:
         return Window.from_bounds(*self.bounds).border
 
     def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies in the site's bounds."""
+        """Return whether (x, y), metres in the site frame, lies in the site's bounds."""
         return self.bounds.contains(x, y)
 
     @property

@@ -98,7 +98,7 @@ class StatusPages:
         return round(time.perf_counter() - began, 4)
 
     def _routes(self) -> dict[str, Any] | None:
-        """Return the state of the route search; it stays well without its fastest engine, which restarts."""
+        """Return the state of the route search; it counts as healthy while its fastest engine restarts."""
         planner = self._fleet.roads.planner
         report = None if planner is None else planner.engine_report
         return None if report is None else asdict(report)

@@ -143,8 +143,7 @@ class RobotSession:
             # The next OpAck carries them as well, for robots that ignore unknown messages.
             await self._channel.send(self._channel.call(Gateways.method, to_json(gateways)))
 
-    # --- incoming messages
-    # ------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     def take_pose(self, pose: SendPos) -> bool:
         """Process a position at once; return false, with nothing done, unless :meth:`listens`."""
@@ -269,7 +268,7 @@ class RobotSession:
         try:
             await self._outcome(storing)
         except DataRefusedError as error:
-            # Sent again it would get the same reply, for ever.
+            # If it were asked again, the robot would send the same refused reply, for ever.
             log.error("%s: %s; what it said is left out", self._who, error)
         except StoreError as error:
             line = f"{self._who}: {error}; it will be asked again"

@@ -197,8 +197,7 @@ class LinkConnection:
         if self._places.get(place.robot) is place:
             del self._places[place.robot]
 
-    # --- incoming messages
-    # ------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     async def _receive(self, frame: str | bytes) -> None:
         id: int | str | None = None

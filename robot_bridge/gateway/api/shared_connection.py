@@ -138,8 +138,7 @@ class LinkedRobotChannel:
         except ConnectionClosed:
             return
 
-    # --- incoming messages
-    # --------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     def count(self) -> bool:
         """Count a message of the robot; return whether it is processed, or exceeds the rate limit."""

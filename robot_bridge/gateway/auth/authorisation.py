@@ -1,4 +1,4 @@
-"""Authorisation of connections, not of requests: who is let in, how many of each kind, disconnection."""
+"""Authorisation of connections, not of requests: admission, limits per kind, disconnection."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ of that time the connection is cut without an answer."""
 REVOKED = 4003
 """Close code of a connection whose token is no longer valid."""
 ENDED = 4004
-"""Close code of a session ended by a supervisor."""
+"""Close code of a session ended by a supervisor or on the command line."""
 MOST_ADDRESSES = 10_000
 PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk", TokenKind.LINK: "/link"}
 OWNERS = {

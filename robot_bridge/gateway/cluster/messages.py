@@ -203,7 +203,7 @@ class DetailBatch(BusMessage, frozen=True, tag="details"):
 
 
 class FencedRobot(msgspec.Struct, array_like=True, frozen=True):
-    """A robot in a keepout or at an obstacle, as :class:`~.core.messages.safety.FenceAlarm` has it."""
+    """A robot in a keepout or at an obstacle, as :class:`~...core.messages.safety.FenceAlarm` has it."""
 
     robot: Robot
     kind: FenceKind

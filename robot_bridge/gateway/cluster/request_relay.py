@@ -135,8 +135,7 @@ class RequestRelay:
         """Set ``link``, called with a robot and a call id when another gateway has it aborted directly."""
         self._links.append(link)
 
-    # --- requests of operators of this gateway
-    # -----------------------------------------------------------------
+    # --- requests of operators of this gateway ---
 
     async def answer(self, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
         """Return the result of ``request`` as JSON values; raises what its handler raises."""
@@ -275,8 +274,7 @@ class RequestRelay:
         what = "was not done" if len(back) == len(ids) else "may have been done: look at the robot's commands"
         return f"gateway {names} has not answered within {ANSWER_WITHIN_S:g} s; what was asked {what}"
 
-    # --- what other gateways ask of robots of this one
-    # --------------------------------------------------------
+    # --- what other gateways ask of robots of this one ---
 
     async def run(self) -> None:
         """Process requests of others until cancelled; raises StoreError."""

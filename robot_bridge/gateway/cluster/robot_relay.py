@@ -381,7 +381,7 @@ class ReportsElsewhere:
     def alarm(self, robot: str, kind: FenceKind, name: str, now: float) -> FenceAlarm | None:
         """Return the alarm that a gateway reported of a robot in an area before it moved here.
 
-        None without such an alarm in a report valid at ``now``, or valid when the robot came of late.
+        None without such an alarm in a report valid at ``now``, or when the robot moved here recently.
         """
         same = robot, kind, name[:LONGEST_NAME]
         came, kept = self._kept.get(robot, (-math.inf, []))

@@ -136,8 +136,7 @@ class EmergencyStopRelay:
         missing = [name for name in others if name not in seen]
         return {**sums, **names, "gateways": StoppedGateways(1 + len(seen), 1 + len(others), missing)}
 
-    # --- background work
-    # -------------------------------------------------------------------------------------
+    # --- background work ---
 
     async def run(self) -> None:
         """Poll the database, and send robots' answers to others, until cancelled."""
@@ -238,8 +237,7 @@ class EmergencyStopRelay:
         entered = *self._membership.others(), *self._membership.just_lost()
         return sorted({*entered, *self._exchange.heard(), *self._exchange.heard_without_lease()})
 
-    # --- incoming messages
-    # ------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     def _called(self, call: StopCall) -> None:
         self._stops.stop_elsewhere(StopRow(call.id, call.at, call.by, call.reason))

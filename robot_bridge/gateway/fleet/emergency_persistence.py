@@ -171,7 +171,7 @@ def _stop(noted: Any) -> StopRow | None:
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)
 
 
-# --- Storing an emergency stop and the Aborts of its robots, whatever is wrong with one robot or table ---
+# --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---
 # All in one transaction where possible. Else every robot is first sent a bare Abort, which belongs to no
 # command: inserts into one table, over a second connection, which wait for no lock. Then the robots are
 # halved until the failing ones are found: each group is a transaction of its own.

@@ -113,7 +113,7 @@ class GeofenceWatch:
         self._left: frozenset[str] = frozenset()
         """The gateways that judge their robots themselves."""
         self._judged: set[str] = set()
-        """The robots of this gateway that were judged here since they are here."""
+        """Robots of this gateway that have been judged since they were claimed here."""
         self._acting = BackgroundTasks()
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
         """Time of the last report, and its number of stays."""

@@ -88,7 +88,7 @@ def _thousandths(seconds: float) -> float:
     return int(seconds * 1000 + 0.5) / 1000 if seconds > 0 else 0.0
 
 
-# --- Robots as the table of numbers that :mod:`.messages.positions` describes; no I/O ---
+# --- Robots as the table of numbers that :mod:`...core.messages.positions` describes; no I/O ---
 
 _OF_A_ROBOT = {
     "age": "received_at",

@@ -195,7 +195,7 @@ class RobotOutboxes:
         self.event(robot).set()
 
     async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
-        """Return the robot's messages as :func:`.requests.read_outbox`, without those held back now."""
+        """Return the robot's messages, urgent ones first, without those held back now."""
         reader = robot, after, after_urgent
         read, rows = self._fresh.pop(robot, (None, []))
         if read != reader:

@@ -33,7 +33,7 @@ from . import task_life
 from .registry import QueueContext, again_if_moved
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
 
-# --- Pause of a robot: it stands and continues later, whatever it is doing and whoever ordered that ---
+# --- Pause of a robot: it stands and continues later, for any task and any sender ---
 # The protocol has no pause: the robot is sent an Abort, and its task waits at the head of its queue, which is
 # paused. Resumed, the queue sends the robot on from where it stands by then.
 
@@ -429,7 +429,7 @@ class QueueEditor:
         return await self._registry.save(before, after, gone)
 
     async def _are_given(self, request: messages.AddTasks) -> bool:
-        """Tell whether all tasks were given to this robot before."""
+        """Return whether all tasks were given to this robot before."""
         ids = [task.task for task in request.tasks]
         known = await self._database.read(queues.whereabouts, ids)
         return bool(ids) and all(one in known and known[one].robot == request.robot for one in ids)

@@ -102,10 +102,10 @@ LARGEST_GROUP = 64
 ATTEMPTS = 5
 WRONG_AT_ONCE_S = 1.0
 LOCKED_FOR_S = 5.0
-"""How long after work that waited for a lock in vain other work waits for locks only briefly: somebody who is
-ended by nobody here, such as an administrator, may have a table for minutes, and most work needs another."""
+"""Seconds after a failed wait for a lock in which other work waits only briefly: a session that the gateway
+cannot end, such as an administrator's, may lock a table for minutes, and most work needs other tables."""
 LOCKED_TOGETHER_S = 2.0
-"""How long work that waits together may wait for locks, one after the other: then one of a kind is enough."""
+"""Seconds in which batched work may wait for locks, one after the other; then once for each kind."""
 
 
 class DatabaseJob(NamedTuple):

@@ -172,9 +172,9 @@ class MariaDB(Dialect):
             return
         seconds = 0 if briefly else LOCK_TIMEOUT_S
         driver: Any = connection.connection.driver_connection
-        # A connection that was lost is told of by the first statement.
+        # The first statement reports a lost connection.
         with contextlib.suppress(connection.dialect.loaded_dbapi.Error), driver.cursor() as cursor:
-            # Rows as usual: for what skips locked ones MariaDB has an error where nobody waits at all.
+            # Row locks keep their timeout: without any, MariaDB refuses even what skips locked rows.
             cursor.execute(f"set session lock_wait_timeout = {seconds}")
             connection.info["briefly"] = briefly
 
@@ -292,9 +292,9 @@ class PostgreSQL(Dialect):
             return
         seconds = BRIEF_LOCK_TIMEOUT_S if briefly else LOCK_TIMEOUT_S
         driver: Any = connection.connection.driver_connection
-        # A connection that was lost is told of by the first statement.
+        # The first statement reports a lost connection.
         with contextlib.suppress(driver_error()):
-            # Outside of a transaction, which would take it back where it fails.
+            # Outside of a transaction, which would undo it on failure.
             driver.autocommit = True
             driver.execute(f"set lock_timeout = {round(seconds * 1000)}")
             connection.info["briefly"] = briefly

@@ -87,7 +87,7 @@ class TrafficControl:
         return messages.Conflicts(seen.now, found, self._waiting.report())
 
     async def watch(self, *, listened_to: bool) -> None:
-        """Send on robots that have waited long enough; report conflicts to operators if ``listened_to``."""
+        """Let robots continue after their wait; report conflicts to operators if ``listened_to``."""
         async with self._lock:
             await self._waiting.catch_up()
             if self._waiting:

@@ -78,8 +78,7 @@ class LinkClient:
         """Requests for areas of the site without an answer yet."""
         self.largest_image_bytes = 0
 
-    # --- information for the adapter
-    # ----------------------------------------------------------------------------
+    # --- information for the adapter ---
 
     @property
     def settings(self) -> LinkSettings:
@@ -251,8 +250,7 @@ class LinkClient:
                 frames.append(jsonrpc.call(Alive.__name__, {"robot": robot.name}))
         return frames
 
-    # --- incoming messages
-    # --------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     def handle(self, call: jsonrpc.Call) -> None:
         """Process a call of the gateway; raises LinkError and MessageError."""

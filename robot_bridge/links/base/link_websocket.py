@@ -75,8 +75,7 @@ class LinkWebSocket:
         self._longest_pause_s = longest_pause_s
         self._standstill = StandstillWatch(longest_pause_s)
 
-    # --- outgoing messages
-    # --------------------------------------------------------------------------------------
+    # --- outgoing messages ---
 
     def post(self, frame: str, *, urgent: bool = False) -> None:
         """Send a frame; outcomes of Aborts before all others."""
@@ -168,8 +167,7 @@ class LinkWebSocket:
         # A clean close would mean that its robots were switched off.
         connection.transport.abort()
 
-    # --- incoming messages
-    # --------------------------------------------------------------------------------------
+    # --- incoming messages ---
 
     def _receive(self, frame: str | bytes, link: CallHandler) -> None:
         # Once admitted, an error in a message must not end a connection by which robots are stopped.

@@ -232,7 +232,7 @@ _NEWEST_CONES = text(
 
 
 class NewPlacement(NamedTuple):
-    """A placed cone; as :class:`~....core.messages.PlacementReport`, before it has an id."""
+    """A placed cone; as :class:`~....core.messages.records.PlacementReport`, before it has an id."""
 
     task: str
     robot: str
