@@ -255,6 +255,23 @@ def test_an_emergency_stop_of_another_desk_makes_void_what_waited_for_the_link_m
     assert void == ["go", "clear"]
 
 
+def test_of_a_target_and_its_abort_that_are_both_too_old_nobody_says_that_the_stop_ends_it(site):
+    buffer, clock = UpdateBuffer(), ManualClock(uptime=50.0)
+    protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), buffer, clock)
+    for key, op in (("go", "SetPosEnd"), ("stop", "Abort")):
+        protocol.submit(OperatorRequest(key, "send", {"robot": "r1", "op": op}, requested_at=49.0))
+    clock.advance(40.0)
+    (hello,) = protocol.begin()
+    answer = {
+        "jsonrpc": "2.0",
+        "id": json.loads(hello)["id"],
+        "result": {"protocol": 1, "site": to_json(site)},
+    }
+    assert not [text for text in protocol.receive(json.dumps(answer)) if '"send"' in text]
+    texts = {one.order.key: one.error for one in buffer.collect().answers}
+    assert texts.keys() == {"go", "stop"} and "the stop ends it" not in texts["go"]
+
+
 def test_a_refusal_sets_the_clock_for_deadlines_right(site):
     mailbox, clock = UpdateBuffer(), ManualClock(uptime=50.0)
     protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, clock)

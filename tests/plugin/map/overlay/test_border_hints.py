@@ -50,3 +50,17 @@ def test_arrows_and_names_are_not_chosen_in_the_same_frame(canvas, site):
         if painter._names._written is not before[1]:
             chosen.append(tenths)
     assert len(found) >= 5 and len(chosen) >= 5 and not set(found) & set(chosen)
+
+
+def test_names_are_chosen_also_where_every_frame_finds_arrows(canvas, site):
+    robots = (600, 50, 0.0, RobotState.FRESH), (60, 50, 0.0, RobotState.FRESH)
+    overlay = show(canvas, site, scene_of(*robots))
+    canvas.grab()
+    painter, placed, chosen = overlay._painter, overlay._placed, 0
+    for half_seconds in range(1, 11):
+        before = painter._names._written
+        scene = scene_of(*robots, now=100.0 + half_seconds / 2)
+        overlay.show_scene(SceneTransformer().placed(scene, placed.transform))
+        canvas.grab()
+        chosen += painter._names._written is not before
+    assert chosen >= 4

@@ -270,3 +270,42 @@ async def test_an_abort_waits_a_second_for_a_database_that_hangs(two, orders, mo
     orders.reach(abort)
     report = await orders.abort(AbortTask("abort-0001", "r1"), "Ada")
     assert report.command == "abort-0001" and two.waiting("r1") == ["Abort"]
+
+
+async def test_an_abort_that_is_stored_in_the_end_is_written_once(two, orders, monkeypatch):
+    await two.ready("s1", magic=3, link="sql")
+    monkeypatch.setattr(order_module, "STORED_WITHIN", 0.01)
+    issue, run_aside = orders._commands.issue, two.database.run_aside
+    waits, stored = asyncio.Event(), asyncio.Event()
+
+    async def issue_late(given):
+        await waits.wait()
+        try:
+            return await issue(given)
+        finally:
+            asyncio.get_running_loop().call_soon(stored.set)
+
+    async def run_late(work, *arguments):
+        waits.set()
+        await stored.wait()
+        return await run_aside(work, *arguments)
+
+    monkeypatch.setattr(orders._commands, "issue", issue_late)
+    monkeypatch.setattr(two.database, "run_aside", run_late)
+    async with asyncio.timeout(60):
+        await orders.abort(AbortTask("abort-0001", "s1"), "Ada")
+    assert two.waiting("s1").count("Abort") == 1
+
+
+async def test_a_robot_that_leaves_keeps_no_abort_from_the_others(two, orders, monkeypatch):
+    for number, robot in enumerate(("s1", "s2"), 3):
+        await two.ready(robot, magic=number, link="sql")
+
+    async def issue(_orders):
+        two.fleet.robots.remove("s1")
+        raise StoreError("the table is locked")
+
+    monkeypatch.setattr(orders._commands, "issue", issue)
+    asked = orders.abort_all(AbortAll("abort-all-1"), "Ada")
+    assert "sent to s2 all the same" in await refusal(asked, StoreError)
+    assert two.waiting("s2").count("Abort") == 1

@@ -156,7 +156,7 @@ def test_an_answer_that_never_comes_is_not_waited_for_without_end(connection):
 
 def test_of_what_is_wrong_with_frames_the_newest_is_told(connection):
     for number in range(MOST_FAULTS + 1):
-        connection._note(f"/r{number}/odom: nonsense")
+        connection._record_fault(f"/r{number}/odom: nonsense")
     assert len(connection.faults) == MOST_FAULTS and "/r0/odom: nonsense" not in connection.faults
     connection._faults["old"] = (-1000.0, "of long ago")
     assert "of long ago" not in connection.faults

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 from sqlalchemy import insert, select, text
 
-from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.errors import DataRefusedError, LockedError, StoreError
+from robot_bridge.gateway.storage import database as database_module
 from robot_bridge.gateway.storage.database import WRONG_AT_ONCE_S, Database
 from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
@@ -319,3 +320,26 @@ async def test_what_waits_for_a_lock_in_vain_fails_alone_and_soon(url, kind, dat
     await database.run(add_counted, "r4")
     assert await database.read(names) == ["r4"]
     assert await database.read(lambda one: list(one.scalars(select(sa.c.robot)))) == ["r2"]
+
+
+@pytest.mark.parametrize("kind", sorted(LOCKS), indirect=True)
+async def test_a_lock_that_is_met_again_and_again_is_waited_for_once_in_a_while(
+    url, kind, database, monkeypatch
+):
+    monkeypatch.setattr(database_module, "LOCKED_FOR_S", 0.5)
+    tried, attempts = [], []
+
+    def add_counted(connection, robot):
+        tried.append(robot)
+        add(connection, robot)
+
+    with contextlib.closing(DatabaseClient(url)) as administrator:
+        for statement in LOCKS[kind]:
+            administrator.sql(statement)
+        until = time.monotonic() + 60.0
+        while attempts.count(2) < 2 and time.monotonic() < until:
+            before = len(tried)
+            with pytest.raises(LockedError):
+                await database.run(add_counted, "r1")
+            attempts.append(len(tried) - before)
+    assert attempts[0] == 2 and attempts.count(2) == 2 and 1 in attempts
