@@ -10,14 +10,14 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages.base import DESK_REQUESTS, to_json
-from ...robot_bridge.core.messages.commands import MOVING, AbortAll, Send
+from ...robot_bridge.core.messages.commands import AbortAll, Send
 from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ...robot_bridge.core.messages.robots import Abort
 from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
-from ..gateway_client.protocol import REPEAT_WITHIN, is_made_void
+from ..gateway_client.protocol import REPEAT_WITHIN, moves_robots
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
@@ -59,17 +59,17 @@ class RequestSender(QObject):
 
     def submit(self, request: OperatorRequest) -> None:
         """Send a request; raises NotSentError when it cannot be sent."""
-        if not (request.lasting or _stops(request) or DESK_REQUESTS[request.method].stops):
+        if not (request.lasting or _may_wait_for_link(request) or DESK_REQUESTS[request.method].stops):
             # Its places and robots are those that this operator sees: no other gateway may carry it out.
             request = replace(request, ground=self._state.ground)
-        if DESK_REQUESTS[request.method].priority in MOVING and not _stops(request):
+        if moves_robots(request):
             self.check_standstill()
         phase = self._state.link.phase
         if phase is ConnectionPhase.CONNECTED:
             self._connection.submit(request)
             return
         is_tried = self._connection.is_open and phase is not ConnectionPhase.FAILED
-        if not (_stops(request) and is_tried):
+        if not (_may_wait_for_link(request) and is_tried):
             raise NotSentError(
                 tr(
                     "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
@@ -114,8 +114,8 @@ class RequestSender(QObject):
             self._not_sent_yet.clear()
 
 
-def _stops(request: OperatorRequest) -> bool:
-    """Return whether a request stops robots and sets none in motion."""
+def _may_wait_for_link(request: OperatorRequest) -> bool:
+    """Return whether a request is an Abort or an emergency stop: these are kept while the link is down."""
     is_abort = request.method == Send.method and request.params.get("op") == Abort.__name__
     return is_abort or request.method in (EmergencyStop.method, AbortAll.method)
 
@@ -352,9 +352,8 @@ class RequestTracker(QObject):
         except NotSentError as error:
             text = tr("{words} was NOT sent: {error}", words=words, error=error)
             raise NotSentError(text, topics) from error
-        is_voidable = is_made_void(order, None)
         self._pending[order.key] = PendingRequest(
-            words, order.requested_at, draft, is_voidable=is_voidable, topics=topics
+            words, order.requested_at, draft, is_voidable=moves_robots(order), topics=topics
         )
         return order.key
 

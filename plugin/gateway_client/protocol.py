@@ -101,7 +101,7 @@ class RequestOutbox:
 
     def overtake(self, robot: str | None) -> None:
         """Have nothing repeated that waits and would set ``robot`` in motion, or any where that is None."""
-        self._void |= {key for key, one in self._waiting.items() if is_made_void(one, robot)}
+        self._void |= {key for key, one in self._waiting.items() if _is_made_void(one, robot)}
 
     def answered(self, key: str) -> OperatorRequest | None:
         """Remove and return the request that was answered; None when it was answered before."""
@@ -158,7 +158,12 @@ def _holds_on(order: OperatorRequest, ground: RequestGround) -> bool:
     return order.ground is None or order.ground.is_same(ground)
 
 
-def is_made_void(order: OperatorRequest, stopped: str | None) -> bool:
+def moves_robots(order: OperatorRequest) -> bool:
+    """Return whether an order sets robots in motion."""
+    return _is_made_void(order, None)
+
+
+def _is_made_void(order: OperatorRequest, stopped: str | None) -> bool:
     """Return whether ``order`` would move a robot that a later stop of ``stopped`` stops; None is all."""
     request = DESK_REQUESTS.get(order.method)
     if request is None or stops_robots(order):
@@ -408,12 +413,12 @@ class GatewayProtocol:
         self.ready = True
         self._hand_back_foreign()
         # First those too old, as their stops may be: of them nobody knows whether they were done.
-        _, too_old = self._outbox.renew(now := self._clock.steady())
+        orders, too_old = self._outbox.renew(now := self._clock.steady())
         for order in too_old:
             self._buffer.add_answer(RequestResult(order, error=_too_old(order, now)))
         for order in self._outbox.withdraw_void():
             self._buffer.add_answer(RequestResult(order, error=_made_void()))
-        orders, _ = self._outbox.renew(now)
+        orders = [order for order in orders if order.key in self._outbox]
         first = [
             OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),

@@ -48,7 +48,7 @@ from .cluster.cluster import Cluster, ClusterSettings, fleet_id, join_cluster, l
 from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
-from .fleet.link_supervision import LinkProcesses
+from .fleet.link_supervision import SUSPEND_INTERVAL, LinkProcesses
 from .fleet.service import Fleet
 from .model.events import Answering, RequestHandlers, StopBegun
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
@@ -108,7 +108,6 @@ LATENCY_INTERVAL = 1.0
 SAVE_INTERVAL = 1.0
 GARBAGE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
-SUSPEND_INTERVAL = 0.5
 PRUNE_INTERVAL = 60.0
 ROADS_INTERVAL = 1.0
 GEOFENCE_INTERVAL = 0.25

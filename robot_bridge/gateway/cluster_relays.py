@@ -12,6 +12,7 @@ from .cluster.messages import Wake
 from .cluster.request_relay import RequestRelay
 from .cluster.robot_relay import DetailRelay, FenceRelay, PositionRelay
 from .cluster.stop_relay import EmergencyStopRelay
+from .fleet.link_supervision import SUSPEND_INTERVAL
 from .fleet.service import Fleet
 from .model.events import Answering, ClosuresChanged, PlanChanged, SiteChosen
 from .monitoring import Counters, Work, every, wait_at_most
@@ -22,7 +23,6 @@ OWNERS_INTERVAL_S = 1.0
 ADDRESSES_INTERVAL_S = 1.0
 FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
-SUSPEND_INTERVAL_S = 0.5
 ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots")
 """Works that the leader does for all gateways."""
 
@@ -77,7 +77,7 @@ class ClusterRelays:
         if "suspensions" in works:
             works = {
                 **works,
-                "suspensions": lambda: every(SUSPEND_INTERVAL_S, self._suspend, "suspensions", counters),
+                "suspensions": lambda: every(SUSPEND_INTERVAL, self._suspend, "suspensions", counters),
             }
         once = {name: self._led(name, works[name], counters) for name in ONCE_PER_DATABASE if name in works}
         return {

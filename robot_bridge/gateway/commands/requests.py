@@ -27,7 +27,7 @@ from ...protocol.codec import decode_command
 from ..model.events import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
-from ..storage.database import Database
+from ..storage.database import Database, start_task
 from ..storage.repositories import commands
 from ..storage.repositories.requests import ORDERS
 from . import persistence
@@ -118,7 +118,7 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-        storing = asyncio.ensure_future(self._commands.issue(orders))
+        storing = start_task(self._commands.issue(orders))
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):

@@ -5,7 +5,16 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import logging
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import (
+    AsyncIterator,
+    Awaitable,
+    Callable,
+    Collection,
+    Coroutine,
+    Iterable,
+    Mapping,
+    Sequence,
+)
 from typing import Any
 
 from sqlalchemy import Connection
@@ -301,8 +310,15 @@ class CommandService(CommandReader):
                 raise
 
     async def _issue_unstored(self, robot: str) -> None:
-        async with self._turns.of([robot]), self._held.of([robot]):
-            await self._store_unstored([robot])
+        async with self._turns.of([robot]), self._held_behind_aborts([robot]):
+            return
+
+    @contextlib.asynccontextmanager
+    async def _held_behind_aborts(self, robots: Collection[str]) -> AsyncIterator[None]:
+        """Hold robots with their kept Aborts stored: no later message is sent before these."""
+        async with self._held.of(robots):
+            await self._store_unstored(robots)
+            yield
 
     async def _store_unstored(self, robots: Iterable[str]) -> None:
         """Store the kept Aborts of robots; one that the database refuses is dropped."""
@@ -334,26 +350,21 @@ class CommandService(CommandReader):
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         async with self._turns.of([robot]):
             await self.drafting.consider_way(path)
-            async with self._held.of([robot]):
-                # An Abort that is not stored yet ends the task.
-                await self._store_unstored([robot])
+            async with self._held_behind_aborts([robot]):
                 self.drafting.check_way(robot, task, path)
                 await self._held.run([robot], write)
                 self._events.publish(OutboxChanged(robot))
 
     async def _outlives_abort(self, robot: str, sa_id: int) -> bool:
         """Store the robot's Aborts, and withdraw message ``sa_id`` if there were any to be sent."""
-        async with self._turns.of([robot]), self._held.of([robot]):
-            await self._store_unstored([robot])
+        async with self._turns.of([robot]), self._held_behind_aborts([robot]):
             if not self.awaits_any_abort(robot):
                 return True
             await self._held.run([robot], answers.remove_answers, [sa_id])
             return False
 
     async def _hand_over(self, robot: str, sa_id: int) -> None:
-        async with self._held.of([robot]):
-            # What waits from before an Abort that is not stored yet is ended by it, not sent behind it.
-            await self._store_unstored([robot])
+        async with self._held_behind_aborts([robot]):
             await self._save_delivered([sa_id])
 
     async def _delivered(self, sa_ids: list[int]) -> None:

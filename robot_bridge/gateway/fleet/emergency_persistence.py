@@ -28,7 +28,7 @@ from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import write_bare_aborts
 from ..commands.service import CommandService
-from ..storage.database import Database
+from ..storage.database import Database, start_task
 from ..storage.dialects import sqlite_file_of
 from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
@@ -225,10 +225,9 @@ class StopWriter:
 
         :raises StoreError: when the database cannot be used; the stop must then be written again.
         """
-        issuing = asyncio.ensure_future(
+        issuing = start_task(
             self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
         )
-        issuing.add_done_callback(lambda done: done.cancelled() or done.exception())
         await asyncio.wait({issuing}, timeout=BARE_AFTER_S)
         early = [] if issuing.done() else await self.add_bare(stop, readers)
         try:

@@ -288,6 +288,8 @@ async def _end(process: asyncio.subprocess.Process) -> None:
 
 # --- Suspension of robots' database accounts that block the others repeatedly
 
+SUSPEND_INTERVAL = 0.5
+"""Seconds between two decisions on accounts: less than a command waits for them."""
 MOST_OFFENCES, WITHIN_S = 3, 60.0
 """How often an account may block the gateway, within how many seconds; one flood is too many."""
 FIRST_S, LONGEST_S = 60.0, 3600.0

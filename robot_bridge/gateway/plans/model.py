@@ -75,7 +75,7 @@ def plan_in(request: SubmitPlan) -> ConePlan:
         raise RefusedError(f"submit_plan: a plan holds {MOST_CONES} cones and as many stops at most")
     if plan.crs:
         raise RefusedError(f"submit_plan: the plan is in {plan.crs}; give it in metres of the site frame")
-    # A desk routes around cones and standing robots, and reckons without these few decimetres.
+    # A desk routes around cones and standing robots, without allowance for these few decimetres.
     faults = check_plan(plan, led_round=True)
     if faults:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""

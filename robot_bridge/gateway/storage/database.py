@@ -531,11 +531,16 @@ class Database:
                 worker.interrupt_if_stuck()
 
 
+def start_task(work: Coroutine[Any, Any, T]) -> asyncio.Task[T]:
+    """Start ``work`` as a task whose error is not logged by asyncio where nobody awaits it any more."""
+    task = asyncio.create_task(work)
+    task.add_done_callback(lambda done: done.cancelled() or done.exception())
+    return task
+
+
 async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
     """Await ``work``, which continues when the wait is cancelled: the gateway must know what is stored."""
-    task = asyncio.ensure_future(work)
-    task.add_done_callback(lambda done: done.cancelled() or done.exception())
-    return await asyncio.shield(task)
+    return await asyncio.shield(start_task(work))
 
 
 def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:
