@@ -110,7 +110,7 @@ def overlay(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
-    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_states")
     desk.state.robots.merge(wire.table_from_rows(stage.fleet.reports(), now[0]))
     # To add a robot takes twice as long as to write it again, and is done once: it is not part of an update.
     while len(view.layer) < number:
@@ -272,7 +272,7 @@ def hour(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
-    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_states")
     memory = []
     for second in range(HOUR):
         now[0] += 1.0

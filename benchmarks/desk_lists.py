@@ -22,7 +22,7 @@ def lists(data: str, number: int) -> None:
     stage = Stage(data, number)
     desk, _, _ = open_desk(stage)
     panel = "fleet_supervisor.plugin.panel"
-    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_states")
     table = importlib.import_module(f"{panel}.robot_table").RobotTableView(desk)
     columns = importlib.import_module(f"{panel}.robot_model")
     alarms = importlib.import_module(f"{panel}.alarms.board").AlarmBoard()

@@ -17,7 +17,7 @@ from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencySt
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
-from ..gateway_client.protocol import REPEAT_WITHIN, moves_robots
+from ..gateway_client.request_outbox import REPEAT_WITHIN, moves_robots
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic

@@ -17,7 +17,8 @@ from ..ui.vendored import websocket_library
 from . import connection_status
 from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
-from .protocol import GatewayProtocol, stops_robots
+from .protocol import GatewayProtocol
+from .request_outbox import stops_robots
 from .robot_states import table_from_frame
 
 CLOSE_WITHIN = 0.2

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
+import re
 import sys
 from pathlib import Path
 
@@ -79,3 +81,39 @@ def test_the_table_is_put_between_the_marks(structure, tmp_path):
     page.write_text("no marks")
     with pytest.raises(SystemExit, match="has no line"):
         structure.write_table(page, "new")
+
+
+def definitions(path: Path) -> set[str]:
+    """Return the names of the functions and constants of a file, and ``Class.method`` of those in classes."""
+    names = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign):
+            names |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            names.add(node.name)
+        elif isinstance(node, ast.ClassDef):
+            inner = [each for each in node.body if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef)]
+            names |= {f"{node.name}.{each.name}" for each in inner}
+    return names
+
+
+FLOW = re.compile(r"^### ([^\n]+)\n(.*?)^\*\*(\d+) files: (\d+) in `plugin/`, (\d+) in", re.M | re.S)
+ROW = re.compile(r"^\| \d+ \| `([^`]+)` \| (.+?) \|", re.M)
+FLOWS = FLOW.findall((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8"))
+
+
+def test_the_page_has_three_flows():
+    assert len(FLOWS) == 3
+
+
+@pytest.mark.parametrize("flow", FLOWS, ids=[name for name, *_ in FLOWS])
+def test_each_function_of_a_flow_is_in_its_file(flow):
+    _, table, *counts = flow
+    rows = ROW.findall(table)
+    files = [file for file, _ in rows]
+    in_plugin = sum(file.startswith("plugin/") for file in files)
+    assert list(map(int, counts)) == [len(set(files)), in_plugin, len(files) - in_plugin]
+    named = {file: set(re.findall(r"`([^`]+)`", functions)) for file, functions in rows}
+    assert {
+        file: missing for file, names in named.items() if (missing := names - definitions(ROOT / file))
+    } == {}

@@ -50,7 +50,11 @@ FORBIDDEN = [
     ("robot_bridge/core/messages/base.py", "from ...gateway import storage", "The core knows"),
     ("robot_bridge/core/robotmap/model.py", "from ..sites import frame", "No cycles"),
     ("robot_bridge/protocol/codec.py", "from ..gateway import app", "The floors of the bridge"),
-    ("robot_bridge/gateway/model/robots.py", "from ..fleet import outbox", "The floors of the gateway"),
+    (
+        "robot_bridge/gateway/model/robots.py",
+        "from ..fleet import robot_outboxes",
+        "The floors of the gateway",
+    ),
     ("robot_bridge/links/base/client.py", "from ...gateway.storage import database", "Adapters know nothing"),
     (
         "robot_bridge/gateway/fleet/service.py",

@@ -1,4 +1,4 @@
-"""Server of operators: sessions over WebSocket, order of their requests, permission check of each.
+"""Server of operators: sessions over WebSocket, order of their requests.
 
 Requests that stop robots are begun at once, before all others. Those that may take long are answered aside,
 and everything else in turn. A stop overtakes the waiting requests: those that would set robots in motion are
@@ -23,7 +23,6 @@ from ...core.clock import steady_time
 from ...core.errors import (
     BridgeError,
     BusyError,
-    ForbiddenError,
     LateError,
     OutdatedError,
     OverridableError,
@@ -40,7 +39,7 @@ from ...core.messages.safety import EmergencyStop
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
 from ..auth.accounts import TokenKind
-from ..auth.authorisation import PATHS, AuthGate
+from ..auth.authorisation import PATHS, AuthGate, check_permission
 from ..auth.client_connection import ClientConnection
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
@@ -511,21 +510,4 @@ def check_deadline(scheduled: ScheduledRequest) -> None:
             "done: a robot shall not drive off on an old request; look at the robots, and ask again if it is "
             "still wanted",
             now,
-        )
-
-
-def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:
-    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not permit.
-
-    ``override_role`` is the least role that may override a check, by the site's settings.
-    """
-    if not role.includes(request.least_role):
-        raise ForbiddenError(
-            f"{request.method}: {operator} is {role.value}, and this takes {request.least_role.value}; "
-            "ask one, or have the role changed by 'robot-bridge operators role'"
-        )
-    if getattr(request, "override", None) is not None and not role.includes(override_role):
-        raise ForbiddenError(
-            f"{request.method}: {operator} is {role.value}, and an override takes {override_role.value}; "
-            "choose another place or way, or ask one (override_role in the site's settings)"
         )

@@ -22,8 +22,8 @@ from ...protocol.codec import check_size, decode_position, decode_request, error
 from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS
 from ..auth.client_connection import ClientConnection
-from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims
+from ..fleet.robot_outboxes import RequestOutcome
 from ..fleet.service import Fleet
 from ..monitoring import BackgroundTasks
 from ..storage.database import to_its_end

@@ -13,7 +13,7 @@ from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name
 from ...core.messages.robots import PAYLOADS, REQUESTS, OpAck
 from ...protocol.codec import decode_request, parse_params
-from ..fleet.outbox import RequestOutcome
+from ..fleet.robot_outboxes import RequestOutcome
 from ..fleet.service import Fleet
 from ..storage.database import Database
 from ..storage.repositories import requests

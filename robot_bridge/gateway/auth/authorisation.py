@@ -1,4 +1,4 @@
-"""Authorisation of connections, not of requests: admission, limits per kind, disconnection."""
+"""Authorisation: what roles permit; admission, limits per kind and disconnection of connections."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ import logging
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
+from typing import Any
 
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ...core.clock import SYSTEM_CLOCK, Clock
-from ...core.errors import AccessError, StoreError, counted
-from ...core.messages.base import Role
+from ...core.errors import AccessError, ForbiddenError, StoreError, counted
+from ...core.messages.base import DeskRequest, Role
 from ...core.sites.settings_tables import LimitSettings
 from ..monitoring import BackgroundTasks
 from ..storage.database import Database
@@ -23,9 +24,30 @@ from .accounts import AccountCache, TokenKind, new_id, token_in
 from .audit import AuditJournal, SessionRow
 from .client_connection import ClientConnection, Identity, RateLimit
 
-# --- The present connections: counted by kind, and ended ---
-
 log = logging.getLogger(__name__)
+
+
+# --- Requests: what the role of an operator permits ---
+
+
+def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:
+    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not permit.
+
+    ``override_role`` is the least role that may override a check, by the site's settings.
+    """
+    if not role.includes(request.least_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and this takes {request.least_role.value}; "
+            "ask one, or have the role changed by 'robot-bridge operators role'"
+        )
+    if getattr(request, "override", None) is not None and not role.includes(override_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and an override takes {override_role.value}; "
+            "choose another place or way, or ask one (override_role in the site's settings)"
+        )
+
+
+# --- The present connections: counted by kind, and ended ---
 
 SHED_LINES_PER_S, SHED_LINES = 1 / 60, 5.0
 """Log lines about connections that made room: a flood of them must not flood the log."""

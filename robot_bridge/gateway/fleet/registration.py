@@ -35,7 +35,7 @@ from ..storage.repositories.emergency_stops import StopRow
 from ..traffic.yielding import YieldManager
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_stop import EmergencyStops
-from .outbox import MapSender, RequestOutcome, RobotOutboxes
+from .robot_outboxes import MapSender, RequestOutcome, RobotOutboxes
 
 log = logging.getLogger(__name__)
 

@@ -59,8 +59,8 @@ from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
 from .operator_updates import Snapshots, reports_of
-from .outbox import MapSender, RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration, Takeover
+from .robot_outboxes import MapSender, RequestOutcome, RobotOutboxes
 from .robot_requests import ObservationService, RobotAnswers
 from .views import FleetViews
 

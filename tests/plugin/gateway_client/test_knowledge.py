@@ -15,15 +15,15 @@ from fleet_supervisor.plugin.gateway_client.fleet_state import (
     RequestGround,
     UpdateBuffer,
 )
-from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.plugin.gateway_client.report_caches import (
     PlacedConeCache,
     PlanCache,
     QueueCache,
     plan_in,
 )
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotStates
+from fleet_supervisor.plugin.gateway_client.request_outbox import RequestOutbox
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotStates, table_from_rows
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock

@@ -7,7 +7,6 @@ import json
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
 from fleet_supervisor.plugin.gateway_client.robot_states import (
     COLUMNS,
     SPARE_WORDS,
@@ -16,6 +15,7 @@ from fleet_supervisor.plugin.gateway_client.robot_states import (
     RobotStates,
     RobotTable,
     table_from_frame,
+    table_from_rows,
 )
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages.positions import PositionForm

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.control.messages import Level, robot_topic
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, table_from_frame
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, table_from_frame, table_from_rows
 from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, Trails
 from fleet_supervisor.plugin.panel.alarms.rules import PairHysteresis, RowHysteresis
 from fleet_supervisor.robot_bridge.core.messages.base import to_json

@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotStates, RobotTable
+from fleet_supervisor.plugin.gateway_client.robot_states import (
+    STATES,
+    RobotStates,
+    RobotTable,
+    table_from_rows,
+)
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from fleet_supervisor.robot_bridge.gateway.model.robots import liveness
 from hypothesis import given

@@ -84,7 +84,7 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     from pathlib import Path
 
     from fleet_supervisor.plugin.control.fleet_controller import FleetController
-    from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
+    from fleet_supervisor.plugin.gateway_client.robot_states import table_from_rows
     from fleet_supervisor.plugin.map.live_view import LiveView
 
     now = [1000.0]

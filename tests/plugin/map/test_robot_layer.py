@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, RobotTable
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, RobotTable, table_from_rows
 from fleet_supervisor.plugin.map.reported_layers import AT_ONCE, RobotLayer
 from qgis.core import NULL, QgsPalLayerSettings, QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView

@@ -6,8 +6,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, table_from_rows
 from fleet_supervisor.plugin.planning.forms import SHOWN, RobotsForm
 from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
 from fleet_supervisor.robot_bridge.core.clock import ManualClock

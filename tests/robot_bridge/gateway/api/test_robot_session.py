@@ -16,8 +16,8 @@ from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
-from robot_bridge.gateway.fleet.outbox import RequestOutcome
 from robot_bridge.gateway.fleet.registration import ConnectionClaims
+from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.monitoring import Counters
 from robot_bridge.gateway.storage.repositories.robots import FencedError

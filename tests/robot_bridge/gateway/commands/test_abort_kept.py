@@ -9,7 +9,7 @@ from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.robots import SetPath
 from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands.persistence import insert_commands
-from robot_bridge.gateway.fleet.outbox import RequestOutcome
+from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 
 LOST = pytest.mark.parametrize(
     ("error", "done"),

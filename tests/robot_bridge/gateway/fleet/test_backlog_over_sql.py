@@ -8,7 +8,7 @@ from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.robots import Abort, Alive, OpAck, Ready, SendPos, Stopped
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.gateway.fleet.outbox import finish_requests
+from robot_bridge.gateway.fleet.robot_outboxes import finish_requests
 from tests.support.bridge.queue_line import Line, task
 
 BEGIN = (20.0, 40.0)

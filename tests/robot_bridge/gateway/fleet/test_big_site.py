@@ -19,7 +19,7 @@ from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.settings_tables import MapSettings
 from robot_bridge.core.sites.site import Site
-from robot_bridge.gateway.fleet.outbox import RequestOutcome, finish_and_read
+from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome, finish_and_read
 from robot_bridge.gateway.site.site_maps import AT_ONCE, SiteMaps
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import requests

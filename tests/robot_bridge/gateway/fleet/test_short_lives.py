@@ -11,7 +11,7 @@ import pytest
 
 from robot_bridge.core.messages.robots import OpAck, Ready, SendPos, SetMap
 from robot_bridge.gateway.api.robot_sql import SqlInterface
-from robot_bridge.gateway.fleet.outbox import RequestOutcome, answer_rows
+from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome, answer_rows
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.trajectories import recording
 from tests.support.bridge.mortal_database import Death, Killed, MortalDatabase

@@ -11,7 +11,7 @@ import pytest
 
 from robot_bridge.core.messages.robots import Abort, OpAck, SetMap
 from robot_bridge.gateway.fleet import emergency_persistence, outbox
-from robot_bridge.gateway.fleet.outbox import RequestOutcome
+from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 from robot_bridge.gateway.storage.database import Database, run_once
 from robot_bridge.gateway.storage.repositories import requests
 from robot_bridge.gateway.storage.repositories import requests as answers
