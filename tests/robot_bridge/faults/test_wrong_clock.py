@@ -18,6 +18,8 @@ LIBRARY = next(iter(sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
 DAY = 86400.0
 FIRST, SECOND = "stop-by-the-right-clock", "stop-by-the-wrong-clock"
 AHEAD = (40.0, 8.0)
+AFTER_IT = 6
+"""Reports to the desk after the gateway has noticed that its clock was set."""
 
 
 class ClockedBridge(Bridge):
@@ -123,14 +125,23 @@ def leave_work_behind(bridge):
 
 
 def drive_until_clock_is_set(bridge, desk, robot, behind):
-    """Have the gateway's clock set, and the robot drive until the gateway has noticed."""
+    """Have the gateway's clock set, and the robot drive until some reports after the gateway has noticed."""
     noticed = bridge.output().count("the clock of this computer was set")
     bridge.set_clock_behind(behind)
 
     def has_noticed():
         say_place(robot, 20.0 + time.monotonic() % 1.0)
         robot.listen(0.05)
-        desk.listen(0.0)
+        desk.listen(0.05)
         return bridge.output().count("the clock of this computer was set") > noticed
 
     wait_until(has_noticed, what="the clock was not seen to be set")
+    enough = len(desk.snapshots) + AFTER_IT
+
+    def has_driven_on():
+        say_place(robot, 20.0 + time.monotonic() % 1.0)
+        robot.listen(0.05)
+        desk.listen(0.05)
+        return len(desk.snapshots) >= enough
+
+    wait_until(has_driven_on, what="robots were not reported after the clock was set")
