@@ -47,7 +47,7 @@ from .auth.port import (
 from .cluster.cluster import Cluster, ClusterSettings, fleet_id, join_cluster, lease_database
 from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
-from .fleet.emergency_persistence import StopJournal, journal_file
+from .fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
 from .fleet.link_supervision import SUSPEND_INTERVAL, LinkProcesses
 from .fleet.service import Fleet
 from .model.events import Answering, RequestHandlers, StopBegun
@@ -360,7 +360,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             stamp = await asyncio.to_thread(stamp_of, folder)
             site = await asyncio.to_thread(_chosen, folder, site)
         await _check_frame(site, settings, database, cluster)
-        journal = await asyncio.to_thread(_journal, settings)
+        stops, aborts = await asyncio.to_thread(_journals, settings)
         gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
         accounts = gate.accounts.has_operator(time.time())
@@ -368,7 +368,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, maps)
         stack.callback(planner.close)
-        fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note, cluster=cluster)
+        note = gate.journal.note
+        fleet = Fleet(maps, database, planner=planner, stops=stops, aborts=aborts, note=note, cluster=cluster)
         await fleet.start()
         plans = PlanService(
             fleet.queue_context,
@@ -519,15 +520,22 @@ async def _check_frame(
         )
 
 
-def _journal(settings: GatewaySettings) -> StopJournal | None:
+def _journals(settings: GatewaySettings) -> tuple[StopJournal | None, AbortJournal | None]:
+    """Return the journals of a gateway, of several on one database without that of Aborts.
+
+    Its robots go on at another one, which does not read it; long after, it would stop them for nothing.
+    """
     folder = _state_folder(settings)
     name = None if settings.cluster is None else settings.cluster.name
-    file = None if folder is None else journal_file(settings.database, folder, name)
-    if file is None:
-        return None
-    journal = StopJournal(file)
-    journal.check()
-    return journal
+    files = None if folder is None else journal_files(settings.database, folder, name)
+    if files is None:
+        return None, None
+    stops, aborts = StopJournal(files[0]), AbortJournal(files[1])
+    stops.check()
+    if settings.cluster is not None:
+        return stops, None
+    aborts.check()
+    return stops, aborts
 
 
 async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event) -> None:

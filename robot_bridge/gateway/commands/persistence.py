@@ -254,20 +254,50 @@ def _stored(command: ActiveCommand) -> StoredCommand:
 # --- Aborts that could not be stored, kept until they are ---
 
 
+class AbortNotes(Protocol):
+    """Aborts noted where a gateway that is killed does not lose them."""
+
+    def write(self, orders: Sequence[CommandOrder]) -> object:
+        """Write ``orders``, and no others, in the background."""
+
+    def read(self) -> list[CommandOrder]:
+        """Return the Aborts that an earlier gateway left."""
+
+
 class UnstoredAborts:
     """The newest unstored Abort of each robot, and of each single command to be aborted.
 
-    The Abort of an emergency stop is among them once the stop is over: before, the stop keeps it.
+    The Abort of an emergency stop is among them once the stop is over: before, the stop keeps it. They are
+    written to ``notes``, if given.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, notes: AbortNotes | None = None) -> None:
         self._orders: dict[str, dict[str | None, CommandOrder]] = {}
+        self._notes = notes
+        self._is_noted = True
+
+    def restore(self) -> None:
+        """Keep the Aborts that an earlier gateway left; reads a file."""
+        if self._notes is not None:
+            self._add(self._notes.read())
 
     def keep(self, orders: Iterable[CommandOrder]) -> None:
         """Keep the Aborts among ``orders``."""
-        for order in orders:
-            if isinstance(order.message, Abort):
-                self._orders.setdefault(order.robot, {})[order.aborts] = order
+        if self._add(orders):
+            self.write_notes()
+
+    def write_notes(self) -> None:
+        """Have the notes say what is kept, unless they do."""
+        if self._notes is not None and not self._is_noted:
+            self._notes.write(self.of(self._orders))
+        self._is_noted = True
+
+    def _add(self, orders: Iterable[CommandOrder]) -> bool:
+        aborts = [order for order in orders if isinstance(order.message, Abort)]
+        for order in aborts:
+            self._orders.setdefault(order.robot, {})[order.aborts] = order
+            self._is_noted = False
+        return bool(aborts)
 
     def of(self, robots: Iterable[str]) -> list[CommandOrder]:
         """Return the Aborts of ``robots``."""
@@ -282,14 +312,19 @@ class UnstoredAborts:
         self._orders[robot] = self._orders.pop(robot)
 
     def drop(self, robot: str) -> None:
-        """Forget the Aborts of a robot."""
-        self._orders.pop(robot, None)
+        """Forget the Aborts of a robot; noted by the next :meth:`write_notes`."""
+        if self._orders.pop(robot, None):
+            self._is_noted = False
 
     def discard(self, order: CommandOrder) -> None:
-        """Forget an Abort, unless a newer one is kept in its place."""
+        """Forget an Abort, unless a newer one is kept in its place; noted by the next :meth:`write_notes`.
+
+        If the gateway is killed before that, the next one finds its id stored, and nothing changes.
+        """
         mine = self._orders.get(order.robot, {})
         if mine.get(order.aborts) is order:
             del mine[order.aborts]
+            self._is_noted = False
         if not mine:
             self._orders.pop(order.robot, None)
 

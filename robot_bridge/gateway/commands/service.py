@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import dataclasses
 import logging
@@ -66,6 +67,7 @@ class CommandService(CommandReader):
         waiting: WaitingRobots,
         events: EventBus,
         fence: OwnerFence = SOLE_FENCE,
+        notes: persistence.AbortNotes | None = None,
     ) -> None:
         super().__init__(ActiveCommands())
         self.drafting = CommandValidator(self._open, robots, rules, waiting)
@@ -79,14 +81,15 @@ class CommandService(CommandReader):
         self._turns = persistence.NamedLocks()
         self._sequences = persistence.RobotSequences(self)
         self._late: set[tuple[str, int]] = set()
-        self._unstored = persistence.UnstoredAborts()
+        self._unstored = persistence.UnstoredAborts(notes)
 
     def set_tolerance(self, tolerance: float) -> None:
         """Set the metres within which a target counts as reached."""
         self._tolerance = tolerance
 
     async def restore(self) -> None:
-        """Load the commands that an earlier gateway left open."""
+        """Load the commands that an earlier gateway left open, and the Aborts that it left unstored."""
+        await asyncio.to_thread(self._unstored.restore)
         stored = await self._database.run(commands.still_open)
         self.adopt(command for command in stored if self._fence.owns(command.report.robot))
 
@@ -256,6 +259,7 @@ class CommandService(CommandReader):
 
         A robot that another gateway has by now does not prevent storing those of others. Raises StoreError.
         """
+        self._unstored.write_notes()
         await self.look_up()
         for robot in self._unstored.robots():
             try:

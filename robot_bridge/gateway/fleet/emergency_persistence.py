@@ -1,4 +1,4 @@
-"""Persistence of emergency stops: a journal file of this computer, then the database."""
+"""Persistence of emergency stops and unstored Aborts: journal files of this computer, then the database."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import logging
 import os
 import time
 import uuid
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -23,7 +23,7 @@ from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainE
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
-from ...core.messages.base import MessageError, check_command_id
+from ...core.messages.base import MessageError, check_command_id, check_robot_name
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import write_bare_aborts
@@ -34,25 +34,26 @@ from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
 from ..storage.repositories.robots import FencedError
 
-# --- Journal of emergency stops in force or not yet stored: a small file on this computer ---
-# A stop is sent before it is stored. Where the database is unavailable then, and the gateway dies before it
-# is back, or where an older state of the database is restored, the next gateway reads the stop here.
+# --- Journals: small files of this computer that outlive the gateway ---
+# A stop or an Abort is sent before it is stored. Where the database is unavailable then, and the gateway dies
+# before it is back, or where an older state of the database is restored, the next gateway reads it here.
 
 log = logging.getLogger(__name__)
 
 
-def journal_file(database: URL, folder: Path, gateway: str | None = None) -> Path | None:
-    """Return the path of the journal of a gateway on ``database``; None for a database in memory.
+def journal_files(database: URL, folder: Path, gateway: str | None = None) -> tuple[Path, Path] | None:
+    """Return the journals of a gateway on ``database``: of stops, and of Aborts; None for one in memory.
 
-    It is beside the file of an SQLite database, else in ``folder``, which gateways of several databases may
-    share, and so may several named gateways (``gateway``) of one database.
+    They are beside the file of an SQLite database, else in ``folder``, which gateways of several databases
+    may share, and so may several named gateways (``gateway``) of one database.
     """
     if database.get_backend_name() == "sqlite":
         file = sqlite_file_of(database)
-        return None if file is None else Path(f"{file}.stop")
+        return None if file is None else (Path(f"{file}.stop"), Path(f"{file}.aborts"))
     of = f"{database.host}:{database.port}/{database.database}"
     name = "" if gateway is None else f"-{gateway}"
-    return folder / f"emergency-stop-{hashlib.sha256(of.encode()).hexdigest()[:12]}{name}.json"
+    of = f"{hashlib.sha256(of.encode()).hexdigest()[:12]}{name}.json"
+    return folder / f"emergency-stop-{of}", folder / f"aborts-{of}"
 
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -60,79 +61,71 @@ ROOM = 16_384
 """bytes reserved for stops in case the disk is full by then."""
 
 
-class StopJournal:
-    """Journal file of the stops in force or not stored; there is no file where there are none."""
+class JournalFile:
+    """A list of JSON objects in a file; there is no file where the list is empty.
+
+    ``what`` names the entries in messages.
+    """
+
+    what = ""
 
     def __init__(self, file: Path) -> None:
         self._file = file
         # Two: the second stop on a full disk is written before the first one's room is free again.
         self._rooms = [file.with_name(f".{file.name}.{name}") for name in ("room", "spare")]
         # One thread: the last write wins.
-        self._thread = ThreadPoolExecutor(1, "emergency stops")
+        self._thread = ThreadPoolExecutor(1, self.what)
 
     def check(self) -> None:
-        """Raise BridgeError when stops could not be written; reserve room for them."""
+        """Raise BridgeError when entries could not be written; reserve room for them."""
         folder = self._file.parent
         if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
             raise BridgeError(
-                f"emergency stops cannot be noted in folder {folder}, which is missing or not to be written: "
+                f"{self.what} cannot be noted in folder {folder}, which is missing or not to be written: "
                 "one that is made while the database is away would be forgotten with this gateway; make the "
                 "folder, or give another one with --state or ROBOT_BRIDGE_STATE"
             )
         self._set_room_aside()
 
-    def write(self, stops: Sequence[StopRow]) -> Future[None]:
-        """Write ``stops``, and no others; the future is done when they are on the disk.
+    def write_entries(self, entries: Iterable[object]) -> Future[None]:
+        """Write ``entries``, and no others; the future is done when they are on the disk.
 
         A failed write is logged: it must not prevent a stop from being sent.
         """
-        return self._thread.submit(self._write, list(stops))
+        return self._thread.submit(self._write, list(entries))
 
-    def read(self) -> list[StopRow]:
-        """Return the stops that an earlier gateway left, oldest first.
-
-        An entry that cannot be read or decoded counts as a stop all the same: a needless one is cleared by a
-        supervisor, a forgotten one may cost more.
-        """
+    def read_entries(self) -> tuple[list[Any], str | None]:
+        """Return the entries that an earlier gateway left, oldest first, and what is wrong with the file."""
         try:
             content = self._file.read_bytes()
         except FileNotFoundError:
-            return []
+            return [], None
         except OSError as error:
             log.error(
-                "%s cannot be read: %s; an emergency stop is noted there: give this account the right to "
-                "read and write it",
+                "%s cannot be read: %s; %s are noted there: give this account the right to read and write it",
                 self._file,
                 error.strerror,
+                self.what,
             )
-            return [self._unknown(f"could not be read ({error.strerror})")]
+            return [], f"could not be read ({error.strerror})"
         try:
             # Decoded as far as possible: a damaged byte of a reason must not hide a stop.
             noted = decode_json(content.decode("utf-8", errors="replace"))
         except DecodingError as error:
             log.error("%s could not be understood: %s", self._file, error)
             noted = None
-        if not isinstance(noted, list):
-            return [self._unknown("could not be understood")]
-        stops = [_stop(one) for one in noted]
-        understood = [stop for stop in stops if stop is not None]
-        return [*understood, *([self._unknown("could not be understood")] if None in stops else [])]
+        return (noted, None) if isinstance(noted, list) else ([], "could not be understood")
 
-    def _unknown(self, what: str) -> StopRow:
-        """Return a stop in place of one that cannot be read."""
-        reason = f"{self._file} {what}; look at every robot before this is cleared"
-        return StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)
-
-    def _write(self, stops: list[StopRow]) -> None:
+    def _write(self, entries: list[object]) -> None:
         try:
-            if stops:
-                self._write_text(json.dumps([_plain(stop) for stop in stops]).encode())
+            if entries:
+                self._write_text(json.dumps(entries).encode())
             else:
                 self._file.unlink(missing_ok=True)
                 self._set_room_aside()
         except Exception as error:
             why = (error.strerror if isinstance(error, OSError) else None) or error
-            log.error("emergency stops cannot be noted in %s: %s; they go out all the same", self._file, why)
+            log.error("%s cannot be noted in %s: %s; they go out all the same", self.what, self._file, why)
 
     def _write_text(self, text: bytes) -> None:
         try:
@@ -153,6 +146,34 @@ class StopJournal:
                     write_state(room, b" " * ROOM, mode=0o600)
 
 
+class StopJournal(JournalFile):
+    """The stops in force or not stored."""
+
+    what = "emergency stops"
+
+    def write(self, stops: Sequence[StopRow]) -> Future[None]:
+        """Write ``stops``, and no others; see :meth:`write_entries`."""
+        return self.write_entries(map(_plain, stops))
+
+    def read(self) -> list[StopRow]:
+        """Return the stops that an earlier gateway left, oldest first.
+
+        An entry that cannot be read or decoded counts as a stop all the same: a needless one is cleared by a
+        supervisor, a forgotten one may cost more.
+        """
+        noted, fault = self.read_entries()
+        if fault is not None:
+            return [self._unknown(fault)]
+        stops = [_stop(one) for one in noted]
+        understood = [stop for stop in stops if stop is not None]
+        return [*understood, *([self._unknown("could not be understood")] if None in stops else [])]
+
+    def _unknown(self, what: str) -> StopRow:
+        """Return a stop in place of one that cannot be read."""
+        reason = f"{self._file} {what}; look at every robot before this is cleared"
+        return StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)
+
+
 def _plain(stop: StopRow) -> dict[str, object]:
     return {"id": stop.id, "at": stop.at, "by": stop.by, "reason": stop.reason}
 
@@ -169,6 +190,58 @@ def _stop(noted: Any) -> StopRow | None:
     except MessageError:
         return None
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)
+
+
+class AbortJournal(JournalFile):
+    """The Aborts that are sent and not stored."""
+
+    what = "Aborts"
+
+    def write(self, orders: Sequence[CommandOrder]) -> Future[None]:
+        """Write ``orders``, and no others; see :meth:`write_entries`."""
+        return self.write_entries(map(_plain_abort, orders))
+
+    def read(self) -> list[CommandOrder]:
+        """Return the Aborts that an earlier gateway left; what cannot be understood is logged."""
+        noted, fault = self.read_entries()
+        orders = [_abort(one) for one in noted]
+        if None in orders and fault is None:
+            fault = "could not be understood"
+        if fault is not None:
+            log.error("%s %s: look whether robots stand that were sent an Abort", self._file, fault)
+        return [order for order in orders if order is not None]
+
+
+def _plain_abort(order: CommandOrder) -> dict[str, object]:
+    return {
+        "command": order.command,
+        "robot": order.robot,
+        "by": order.operator,
+        "reason": order.reason,
+        "aborts": order.aborts,
+        "emergency": order.is_emergency,
+    }
+
+
+def _abort(noted: Any) -> CommandOrder | None:
+    """Return the journaled Abort; None for an entry that is none, or that no database could store."""
+    if not isinstance(noted, dict):
+        return None
+    command, robot, by, reason, aborts = (
+        noted.get(name) for name in ("command", "robot", "by", "reason", "aborts")
+    )
+    if not (isinstance(command, str) and isinstance(robot, str) and isinstance(by, str)):
+        return None
+    try:
+        check_command_id(command)
+        check_robot_name(robot)
+        if aborts is not None:
+            check_command_id(aborts)
+    except (MessageError, TypeError):
+        return None
+    reason = reason if isinstance(reason, str) else None
+    message = Abort(emergency=noted.get("emergency") is True)
+    return CommandOrder(command, robot, message, by, reason, aborts=aborts)
 
 
 # --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---

@@ -53,7 +53,7 @@ from ..storage.repositories.robots import SOLE_FENCE, FencedError
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
 from ..trajectories.recording import TrajectoryRecorder, TrajectoryWriter
-from .emergency_persistence import StopJournal
+from .emergency_persistence import AbortJournal, StopJournal
 from .emergency_stop import EmergencyStops
 from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
@@ -80,6 +80,7 @@ class Fleet:
         clock: Clock = SYSTEM_CLOCK,
         planner: Planner | None = None,
         stops: StopJournal | None = None,
+        aborts: AbortJournal | None = None,
         note: AuditNote | None = None,
         cluster: Cluster | None = None,
     ) -> None:
@@ -100,7 +101,15 @@ class Fleet:
         self.views = FleetViews(self.robots, site, clock)
         rules, waiting = CommandRules(site, self.robots), WaitingRobots()
         self._commands = CommandService(
-            database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
+            database,
+            self.robots,
+            site.report.reached_tolerance,
+            clock,
+            rules,
+            waiting,
+            self.events,
+            fence,
+            aborts,
         )
         self.orders = CommandRequests(site, self.robots, self._commands, database)
         # A stop that is cleared by one gateway ends motions at others that began before.

@@ -9,7 +9,7 @@ from contextlib import closing
 import pytest
 from sqlalchemy import make_url
 
-from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_file
+from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_files
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.wire import RefusedError
@@ -55,13 +55,13 @@ async def test_a_disk_that_takes_nothing_is_told_to_the_log_and_keeps_no_stop_ba
 
 def test_each_database_has_a_file_of_its_own(tmp_path):
     def of(url):
-        return journal_file(make_url(url), tmp_path)
+        return journal_files(make_url(url), tmp_path)
 
-    assert of(f"sqlite:///{tmp_path}/a.db") == tmp_path / "a.db.stop"
+    assert of(f"sqlite:///{tmp_path}/a.db") == (tmp_path / "a.db.stop", tmp_path / "a.db.aborts")
     assert of("sqlite://") is None
     names = {of(f"{kind}://x:y@h/{name}") for kind in ("postgresql", "mariadb") for name in "ab"}
-    assert len(names) == 2
-    assert {name.parent for name in names} == {tmp_path}
+    assert len(names) == 2 and len({name for pair in names for name in pair}) == 4
+    assert {name.parent for pair in names for name in pair} == {tmp_path}
     # Another account or password is the same database.
     assert of("postgresql://x:y@h/a") == of("postgresql://z@h/a")
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
+from pathlib import Path
 
 import pytest
 
+from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.robots.robot_wires import SqlRobot
 from tests.support.wire import RefusedError
@@ -52,6 +54,31 @@ def test_an_abort_that_cannot_be_stored_is_sent_and_refused_visibly(bridge, aske
     robot.say(heard["id"])
     robot.say(robot.wait_for("Abort", 30.0)["id"])
     assert desk.wait_for_step("target-it-1", "aborted")
+
+
+def test_an_abort_that_could_not_be_stored_outlives_the_gateway(bridge):
+    """The gateway is killed before the database takes anything again: the next one stores the Abort first."""
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    robot.plug_in(1)
+    desk.send("target-it-1", "r1", "SetPosEnd", x=50.0, y=40.0)
+    robot.wait_for("SetPosEnd")
+    desk.wait_for_step("target-it-1", "delivered")
+    with locked(bridge):
+        with pytest.raises(RefusedError, match="The Abort is not stored; it was sent to r1"):
+            desk.ask("abort", {"command": "abort-it-1", "robot": "r1"}, 30.0)
+        robot.wait_for("Abort")
+        bridge.kill_gateway()
+    bridge.start_gateway()
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    robot.plug_in(1)
+    # What is on its way to the robot may come once more, and the Abort after it.
+    robot.say(robot.wait_for("Abort", 30.0)["id"])
+    assert desk.wait_for_step("target-it-1", "aborted")
+    assert desk.wait_for_step("abort-it-1", "acknowledged")["operator"] == "Ada"
+    robot.calls.clear()
+    robot.plug_in(1)
+    assert [call for call in robot.calls if call["method"] == "SetPosEnd"] == []
+    wait_until(lambda: not Path(f"{bridge.file}.aborts").exists())
 
 
 LOCKS = {

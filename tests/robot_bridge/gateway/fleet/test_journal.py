@@ -1,4 +1,4 @@
-"""The file of stops that are not stored yet: written before anything else, read by every later gateway."""
+"""The files of stops and Aborts that are not stored: written first of all, read by every later gateway."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ import pytest
 from sqlalchemy import make_url
 
 from robot_bridge.core.errors import BridgeError
-from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_file
+from robot_bridge.core.messages.robots import Abort
+from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.persistence import UnstoredAborts
+from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.errors import StageError
 from tests.support.faults.disk import Disk
@@ -42,9 +45,11 @@ async def test_the_file_reads_as_gateways_before_and_after_this_one_write_it(fil
 def test_the_file_of_a_server_s_database_is_found_again_by_later_gateways(tmp_path):
     url = make_url("postgresql://ada:secret@db.example.org:5432/fleet")
     number = hashlib.sha256(b"db.example.org:5432/fleet").hexdigest()[:12]
-    assert journal_file(url, tmp_path) == tmp_path / f"emergency-stop-{number}.json"
-    assert journal_file(make_url("sqlite:////tmp/a.db"), tmp_path) == Path("/tmp/a.db.stop")
-    assert journal_file(make_url("sqlite://"), tmp_path) is None
+    names = [f"emergency-stop-{number}.json", f"aborts-{number}.json"]
+    assert journal_files(url, tmp_path) == tuple(tmp_path / name for name in names)
+    beside = Path("/tmp/a.db.stop"), Path("/tmp/a.db.aborts")
+    assert journal_files(make_url("sqlite:////tmp/a.db"), tmp_path) == beside
+    assert journal_files(make_url("sqlite://"), tmp_path) is None
 
 
 @pytest.mark.parametrize("wrong", [{"id": 1}, {"at": 1000}, {"at": "noon"}, {"by": None}])
@@ -90,7 +95,7 @@ def test_a_file_that_cannot_be_read_is_a_stop_and_the_log_says_what_to_do(file, 
         f"{file} could not be read (Is a directory); look at every robot before this is cleared"
     )
     assert (
-        f"{file} cannot be read: Is a directory; an emergency stop is noted there: "
+        f"{file} cannot be read: Is a directory; emergency stops are noted there: "
         "give this account the right to read and write it"
     ) in caplog.text
 
@@ -257,3 +262,74 @@ async def test_a_full_disk_takes_one_stop_after_the_other(tmp_path):
                 assert StopJournal(file).read() == noted[-3:]
     except StageError as error:
         pytest.skip(str(error))
+
+
+ABORTS = [
+    CommandOrder("abort-0001", "r1", Abort(), "Ada", "smoke"),
+    CommandOrder("abort-0002", "r1", Abort(), "Ada", aborts="target-0001"),
+    CommandOrder("abort-0003", "r2", Abort(emergency=True), "gateway"),
+]
+
+
+async def test_aborts_are_read_as_they_were_written_and_gone_once_none_is_left(tmp_path):
+    file = tmp_path / "fleet.db.aborts"
+    journal = AbortJournal(file)
+    journal.write(ABORTS).result()
+    assert AbortJournal(file).read() == ABORTS
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    journal.write([]).result()
+    assert not file.exists() and AbortJournal(file).read() == []
+
+
+GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada"}'
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        "7",
+        GOOD.replace("abort-0001", "short"),
+        GOOD.replace("abort-0001", "x" * 65),
+        GOOD.replace("r1", "no robot's name"),
+        GOOD.replace('"Ada"', "7"),
+        GOOD.replace("}", ', "aborts": 7}'),
+        GOOD.replace("}", ', "aborts": "short"}'),
+    ],
+)
+def test_an_abort_that_cannot_be_understood_hides_no_other_and_is_in_the_log(tmp_path, caplog, bad):
+    file = tmp_path / "fleet.db.aborts"
+    file.write_text(f"[{bad}, {GOOD}]", encoding="utf-8")
+    assert AbortJournal(file).read() == [CommandOrder("abort-0001", "r1", Abort(), "Ada")]
+    assert "could not be understood: look whether robots stand that were sent an Abort" in caplog.text
+
+
+@pytest.mark.parametrize("bad", ["[" * 2000, "null", '{"robot": "r1"}', "x"])
+def test_a_damaged_file_of_aborts_ends_no_gateway(tmp_path, caplog, bad):
+    file = tmp_path / "fleet.db.aborts"
+    file.write_text(bad, encoding="utf-8")
+    assert AbortJournal(file).read() == []
+    assert "look whether robots stand that were sent an Abort" in caplog.text
+
+
+def test_what_is_kept_is_noted_at_once_and_what_is_stored_at_the_next_notes(tmp_path):
+    class Notes:
+        def __init__(self):
+            self.written = []
+
+        def read(self):
+            return ABORTS[2:]
+
+        def write(self, orders):
+            self.written.append(list(orders))
+
+    notes = Notes()
+    kept = UnstoredAborts(notes)
+    kept.restore()
+    assert (kept.robots(), notes.written) == (["r2"], [])
+    kept.keep(ABORTS[:2])
+    assert notes.written == [[ABORTS[2], *ABORTS[:2]]]
+    kept.discard(ABORTS[0])
+    kept.drop("r2")
+    kept.write_notes()
+    kept.write_notes()
+    assert notes.written[1:] == [[ABORTS[1]]]
