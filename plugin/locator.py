@@ -122,7 +122,7 @@ def _match(
 class RobotViewer(Protocol):
     """A window that shows robots."""
 
-    def go_to(self, robot: str) -> None:
+    def show_on_map(self, robot: str) -> None:
         """Select a robot alone and show it on the map."""
 
 
@@ -201,10 +201,10 @@ class RobotFilter(QgsLocatorFilter):
         self._waiting = None
         typed, row = self._typed_name(), result.displayString
         if typed is None:
-            self._viewer.go_to(row)
+            self._viewer.show_on_map(row)
             return
         if self._robots.is_listed(row, typed) and self._robots.is_marked_by_hand(row):
-            self._viewer.go_to(row)
+            self._viewer.show_on_map(row)
         elif not self._robots.has(typed) and self._robots.expects_more(typed):
             self._waiting = Choice(typed, row, steady_time() + CHOICE_FOR_S)
         else:
@@ -229,7 +229,7 @@ class RobotFilter(QgsLocatorFilter):
         if robot is None and self._robots.is_listed(row, typed):
             robot = row
         for name in [robot] if robot is not None else self._robots.names(typed)[:1]:
-            self._viewer.go_to(name)
+            self._viewer.show_on_map(name)
 
     def _typed_name(self) -> str | None:
         """Return the text in the locator's field after the prefix."""

@@ -341,7 +341,7 @@ class MessageBar(QObject):
         """Return the texts shown now."""
         return list(self._shown)
 
-    def take_down(self, text: str) -> None:
+    def remove_text(self, text: str) -> None:
         """Remove a text that is over; one that is not shown is ignored."""
         item = self._shown.pop(text, None)
         if item is not None:
@@ -361,7 +361,7 @@ class MessageBar(QObject):
         if hanging is None:
             QgsMessageLog.logMessage(text, TITLE, level, False)
         else:
-            self.take_down(text)
+            self.remove_text(text)
         item = QgsMessageBarItem(MessageLabel(text, self._bar), level, SECONDS.get(level, 0))
         self._shown[text] = item
         self._bar.pushItem(item)

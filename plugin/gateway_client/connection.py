@@ -127,7 +127,7 @@ class GatewayClient:
             return GatewayLinkError(str(error), final=True, wants_token=True)
         except Exception as error:
             if getattr(getattr(error, "rcvd", None), "code", None) == connection_status.TOO_LARGE:
-                self._protocol.hand_back_largest()
+                self._protocol.refuse_largest()
             explained = connection_status.explain(error, self._url, self._library.exceptions)
             if explained is None:
                 raise

@@ -145,7 +145,7 @@ class GatewayProtocol:
         """Send nothing until the next link has been greeted."""
         self.ready = False
 
-    def hand_back_largest(self) -> None:
+    def refuse_largest(self) -> None:
         """Hand back the largest request: the gateway ended the link over its size, and would do so again."""
         order, size = self._outbox.largest()
         if order is not None:

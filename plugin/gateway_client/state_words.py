@@ -59,7 +59,7 @@ def longest_word(words: Iterable[str]) -> str:
     return max(words, key=len)
 
 
-def look_in_words(look: int) -> str:
+def display_state_in_words(look: int) -> str:
     """Return the word for a display state: the robot's state, or that it may be elsewhere."""
     return tr("unsure") if look == UNSURE else ROBOT_STATES[STATES[look]]
 

@@ -170,7 +170,7 @@ def keep_style(project: QgsProject, layer: QgsMapLayer) -> None:
     project.writeEntry(SCOPE, _entry(layer), style.xmlData())
 
 
-def give_style(project: QgsProject, layer: QgsMapLayer) -> bool:
+def apply_style(project: QgsProject, layer: QgsMapLayer) -> bool:
     """Apply the style of a live layer stored in ``project``; false where there is none."""
     text, found = project.readEntry(SCOPE, _entry(layer))
     if not found or not text:
@@ -361,7 +361,7 @@ class RowLayer:
         layer = QgsVectorLayer(f"{self._kind}?{fields}", self._name, "memory")
         layer.setCrs(QgsCoordinateReferenceSystem(crs))
         make_live(layer, self._mark)
-        if not give_style(self._project, layer):
+        if not apply_style(self._project, layer):
             self._style(layer)
         self._project.addMapLayer(layer, False)
         fleet_group(self._project).addLayer(layer)

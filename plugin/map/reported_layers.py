@@ -244,7 +244,7 @@ class RobotLayer(QObject):
         if self._style is not None:
             self._style.writeToLayer(self._layer)
         else:
-            live_layers.give_style(self._project, self._layer)
+            live_layers.apply_style(self._project, self._layer)
         self._layer.willBeDeleted.connect(self._gone)
         self._layer.selectionChanged.connect(self._selection_changed)
         self._project.addMapLayer(self._layer, False)

@@ -289,7 +289,7 @@ class ObservationDock(ActionDock):
         if row is not None:
             self.list.setCurrentIndex(self.model.index(row))
 
-    def go_to(self, number: int) -> None:
+    def show_on_map(self, number: int) -> None:
         """Show the place of an observation on the map."""
         report = self._desk.state.observations.get(number)
         if report is None:
@@ -308,8 +308,8 @@ class ObservationDock(ActionDock):
         self.thumbnails.made.connect(self._refresh_later)
         self.reviewed.toggled.connect(self.refresh)
         self.list.selectionModel().currentChanged.connect(lambda *_: self._show_chosen())
-        self.list.doubleClicked.connect(lambda index: self.go_to(index.data(observation_views.NUMBER)))
-        self.form.place_requested.connect(self.go_to)
+        self.list.doubleClicked.connect(lambda index: self.show_on_map(index.data(observation_views.NUMBER)))
+        self.form.place_requested.connect(self.show_on_map)
         self.form.requested.connect(self._review)
         self.feed.reviewed.connect(self._reviewed)
         self.feed.refused.connect(self._refused)

@@ -19,7 +19,12 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import LOOKS, STATES, UNSURE, RobotStates, RobotView
-from ..gateway_client.state_words import COMMAND_STATES, longest_word, look_in_words, robot_state_in_words
+from ..gateway_client.state_words import (
+    COMMAND_STATES,
+    display_state_in_words,
+    longest_word,
+    robot_state_in_words,
+)
 from ..ui.glyphs import STATE_COLOURS, UNSURE_COLOUR, StateIcons, for_letters
 from ..ui.language import age_in_words, last_seen_in_words, tr
 from ..ui.tables import TO_THE_RIGHT
@@ -45,7 +50,7 @@ COLUMNS = (
     Column(
         "State",
         tr("State"),
-        longest_word(map(look_in_words, LOOKS)),
+        longest_word(map(display_state_in_words, LOOKS)),
         tr("How far what is known of it can be trusted"),
     ),
     Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
@@ -253,7 +258,7 @@ class FleetRows:
         """Return which robots have ``word`` in their name, state, task or link; each text is checked once,
         however many robots have it."""
         has = np.fromiter((word in name for name in names), dtype=bool, count=len(names))
-        has |= np.array([word in look_in_words(look).casefold() for look in LOOKS])[self.shown_as]
+        has |= np.array([word in display_state_in_words(look).casefold() for look in LOOKS])[self.shown_as]
         return has | self.picture.says("link", word) | self._has_task(word)
 
     def _has_task(self, word: str) -> Bools:
@@ -453,7 +458,7 @@ class RobotModel(QAbstractTableModel):
         if title == "Robot":
             return fleet.names[row]
         if title == "State":
-            return look_in_words(int(self._fleet.shown_as[row]))
+            return display_state_in_words(int(self._fleet.shown_as[row]))
         if title == "Task":
             return fleet.task(row)
         if title == "Link":

@@ -143,7 +143,7 @@ class FleetWindow(QObject):
         entries = [self._draft_menu.menuAction() if one in drafts else one for one in self.actions.all()]
         return list(dict.fromkeys(entries))
 
-    def go_to(self, robot: str) -> None:
+    def show_on_map(self, robot: str) -> None:
         """Select a robot alone and show it on the map."""
         self.desk.selection.select(robot)
         self.view.zoom_to(robot)
@@ -181,10 +181,10 @@ class FleetWindow(QObject):
         self.dock.table.zoom_requested.connect(self.view.zoom_to)
         self.dock.log.place_requested.connect(self.view.show_place)
         desk.messages.posted.connect(self.notices.show_message)
-        desk.messages.withdrawn.connect(self.notices.take_down)
+        desk.messages.withdrawn.connect(self.notices.remove_text)
         self.notices.closed.connect(desk.messages.forget)
         self._project_match.differs.connect(self.notices.error)
-        self._project_match.over.connect(self.notices.take_down)
+        self._project_match.over.connect(self.notices.remove_text)
         desk.state.link_changed.connect(self._show_link)
         desk.state.gateways_changed.connect(self._keep_gateways)
 

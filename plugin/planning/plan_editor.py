@@ -62,7 +62,7 @@ class PlanEditor(QObject):
         self._then: Callable[[PlanProposal], None] = self._put
         """Receives the plan that the task makes."""
         self._closure_check, self._made_check = ClosureCheck(self), ClosureCheck(self)
-        desk.roads.closures_changed.connect(self.look_at_closures)
+        desk.roads.closures_changed.connect(self.check_closures)
 
     def plan_with(self, settings: plan_settings.PlanSettings) -> None:
         """Make plans with ``settings`` from now on."""
@@ -149,7 +149,7 @@ class PlanEditor(QObject):
         self._made_check.stop()
         self.cancel()
 
-    def look_at_closures(self) -> None:
+    def check_closures(self) -> None:
         """Find again which parts of the plan lead along closed roads."""
         draft = self.draft
         if draft is None:

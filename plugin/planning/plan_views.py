@@ -115,7 +115,7 @@ class PlanTree(QTreeWidget):
         if target and onto is not None:
             self._want(target, onto, after=below)
 
-    def give_to(self, robot: str) -> None:
+    def append_to_route(self, robot: str) -> None:
         """Request that the selected cone become the last one of ``robot``."""
         target = self._target()
         if target and self._plan is not None:
@@ -155,7 +155,7 @@ class PlanTree(QTreeWidget):
         for one in self._plan.robots:
             if not one.lost:
                 name = one.robot.id
-                menu.addAction(tr("Give to {name}", name=name), lambda name=name: self.give_to(name))
+                menu.addAction(tr("Give to {name}", name=name), lambda name=name: self.append_to_route(name))
         menu.addAction(tr("Take out"), lambda: self.remove_requested.emit(target))
         menu.exec(self.viewport().mapToGlobal(at))
 

@@ -261,7 +261,7 @@ class ReplayLayer(QObject):
         layer = QgsVectorLayer(f"LineString?{FIELDS}", tr("Trajectories (replay)"), "memory")
         layer.setCrs(crs)
         live_layers.make_live(layer, OWN_LAYER)
-        if not live_layers.give_style(self._project, layer):
+        if not live_layers.apply_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)
         # The past must not mix with the present: the layer is on the live map only if it is ticked.

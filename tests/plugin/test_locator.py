@@ -57,7 +57,7 @@ def test_enter_before_the_list_is_there_goes_by_what_is_typed(at_desk, iface, wa
     ):
         locator.findChild(QLineEdit).setText(typed)
         gone_to = []
-        monkeypatch.setattr(result.filter._viewer, "go_to", gone_to.append)
+        monkeypatch.setattr(result.filter._viewer, "show_on_map", gone_to.append)
         result.filter.triggerResult(result)
         assert gone_to == goes_to, typed
 

@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QSt
 
 from ....robot_bridge.core.messages.safety import RobotState
 from ...gateway_client.robot_states import STATES, UNSURE, RobotArrays
-from ...gateway_client.state_words import ROBOT_STATES, look_in_words
+from ...gateway_client.state_words import ROBOT_STATES, display_state_in_words
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
 from .robots_painter import Fragments
@@ -468,7 +468,7 @@ def texts(robots: RobotArrays, row: int) -> list[str]:
     """Return the texts beside a robot: its name; and its state and its last message's age unless fresh."""
     look = robots.shown_as[row]
     if look == UNSURE:
-        return [robots.names[row], f"· {look_in_words(UNSURE)}"]
+        return [robots.names[row], f"· {display_state_in_words(UNSURE)}"]
     state = STATES[look]
     if state is RobotState.FRESH:
         return [robots.names[row]]

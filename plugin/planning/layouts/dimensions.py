@@ -140,7 +140,7 @@ class LayoutDimensions(QDialog):
         self.heading.setValue(heading)
         self.heading.blockSignals(False)
 
-    def take_keys(self) -> None:
+    def focus_heading(self) -> None:
         """Set the focus in this window."""
         self.show()
         self.activateWindow()

@@ -129,7 +129,7 @@ class LayoutLayer:
         layer.triggerRepaint()
         return layer
 
-    def take_out(self, layer_id: str, ids: Collection[str]) -> Steps[bool]:
+    def remove_cones(self, layer_id: str, ids: Collection[str]) -> Steps[bool]:
         """Remove the cones ``ids`` from the layer ``layer_id``; false where it has none of them any more.
 
         :raises LayerReadingError: as :meth:`standing`.

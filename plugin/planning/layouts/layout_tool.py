@@ -317,7 +317,7 @@ class LayoutTool(QgsMapTool):
     def _undoing(self) -> Steps[None]:
         while self._placed:
             last = self._placed[-1]
-            found = yield from self._store.take_out(last.layer, {cone.id for cone in last.cones})
+            found = yield from self._store.remove_cones(last.layer, {cone.id for cone in last.cones})
             self._placed.pop()
             if found:
                 self._taken_back.append(last)
@@ -461,7 +461,7 @@ class LayoutAction:
         self.dimensions.turned.connect(self.tool.turn_to)
         self.dimensions.left.connect(iface.mapCanvas().setFocus)
         self.tool.turned.connect(self.dimensions.show_heading)
-        self.tool.dimensions_requested.connect(self.dimensions.take_keys)
+        self.tool.dimensions_requested.connect(self.dimensions.focus_heading)
         self.dimensions.undo_requested.connect(self.tool.undo)
         self.tool.undo_changed.connect(self.dimensions.undo.setEnabled)
         self._file = LayoutFile(QgsProject.instance(), notices)

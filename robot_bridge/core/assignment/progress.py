@@ -143,7 +143,7 @@ class PlanProgress:
             if known is not None:
                 self._sent_for[known.stop.id].remove(task)
 
-    def take_queue(self, queue: QueueReport) -> None:
+    def apply_queue(self, queue: QueueReport) -> None:
         """Apply a report on a robot's queue."""
         open_ones = {task.task for task in queue.tasks}
         for report in (*reversed(queue.ended), *queue.tasks):
@@ -155,7 +155,7 @@ class PlanProgress:
                 # It ended while no client was connected; for a cone, the stored placement supplies the rest.
                 self.reports[task] = replace(known, state=TaskState.DONE)
 
-    def take_placement(self, report: PlacementReport) -> None:
+    def apply_placement(self, report: PlacementReport) -> None:
         """Apply a report on a placed or collected cone."""
         for target, facts in self.facts.items():
             if facts.placement is not None:

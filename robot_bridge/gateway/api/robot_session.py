@@ -145,13 +145,13 @@ class RobotSession:
 
     # --- incoming messages ---
 
-    def take_pose(self, pose: SendPos) -> bool:
+    def accept_pose(self, pose: SendPos) -> bool:
         """Process a position at once; return false, with nothing done, unless :meth:`listens`."""
         if not self.listens():
             return False
         rest: Awaitable[None] | Exception | None
         try:
-            rest = self._fleet.take_pose(self.robot, self._channel.name, pose)
+            rest = self._fleet.accept_pose(self.robot, self._channel.name, pose)
         except Exception as error:
             rest = error
         if rest is not None:
@@ -168,7 +168,7 @@ class RobotSession:
 
     async def receive_pose(self, pose: SendPos) -> None:
         """Process a position, at once if possible; else after the messages being stored, or refuse it."""
-        if not self.take_pose(pose):
+        if not self.accept_pose(pose):
             await self._due.wait()
             await self._answer(POSITION, self._ask(pose, None))
 
@@ -390,7 +390,7 @@ class RobotConnection:
     def _take_at_once(self, frame: bytes) -> bool:
         """Process a position; return false for everything else, and while a wait is needed."""
         pose = decode_position(frame)
-        return pose is not None and self.session.take_pose(pose)
+        return pose is not None and self.session.accept_pose(pose)
 
     async def _receive(self, frame: str | bytes) -> None:
         if len(frame) <= LARGEST_MESSAGE and (pose := decode_position(frame)) is not None:

@@ -319,7 +319,7 @@ class LinkConnection:
                 at_once.append((robot, pose))
             else:
                 place.add(place.session.receive_pose(pose))
-        for robot, rest in self._fleet.take_poses(self.name, at_once):
+        for robot, rest in self._fleet.accept_poses(self.name, at_once):
             self._places[robot].session.follow_up(rest)
         for robot, fault in refused:
             await self._refuse(None, fault, robot)

@@ -127,7 +127,7 @@ class RateLimit:
         self._left -= 1.0
         return True
 
-    def give_back(self) -> None:
+    def refund(self) -> None:
         """Return a token to the bucket."""
         self._left = min(self._burst, self._left + 1.0)
 
@@ -176,7 +176,7 @@ class FastPath:
         while (found := short_text(data, start)) is not None and messages.consume():
             message, end = found
             if not self._handler(message):
-                messages.give_back()
+                messages.refund()
                 break
             start = end
         return start

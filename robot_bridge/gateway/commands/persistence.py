@@ -115,7 +115,7 @@ def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[Act
     A message also counts as fetched if its robot has acknowledged it without deleting it, whether the gateway
     has read that or not.
     """
-    taken_back = answers.take_back(connection, [recall.queued.sa_id for recall in recalls])
+    taken_back = answers.withdraw_unread(connection, [recall.queued.sa_id for recall in recalls])
     if taken_back:
         taken_back -= _acknowledged(connection, recalls)
     steps = [recall.ended if recall.queued.sa_id in taken_back else recall.fetched for recall in recalls]

@@ -247,7 +247,7 @@ class CommandService(CommandReader):
         """End every command of a robot, which will not carry them out."""
         await to_its_end(self._give_up(robot, reason))
 
-    async def look_up(self) -> None:
+    async def resolve_uncertain_commit(self) -> None:
         """Resolve a transaction with an unknown outcome from the database; raises StoreError."""
         if self._held.has_uncertain_commit:
             async with self._held.of(()):
@@ -260,7 +260,7 @@ class CommandService(CommandReader):
         A robot that another gateway has by now does not prevent storing those of others. Raises StoreError.
         """
         self._unstored.write_notes()
-        await self.look_up()
+        await self.resolve_uncertain_commit()
         for robot in self._unstored.robots():
             try:
                 await to_its_end(self._issue_unstored(robot))

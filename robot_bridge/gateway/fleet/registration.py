@@ -477,7 +477,7 @@ class Decommissioning:
 
     async def carry_out(self) -> None:
         """Remove the robots deleted since the last call; raises StoreError, and continues at the next."""
-        for robot in sorted(self._saving.take_removed()):
+        for robot in sorted(self._saving.collect_removed()):
             log.warning("robot %s was removed", robot)
             self._robots.remove(robot)
             self._leaving.add(robot)

@@ -344,7 +344,7 @@ class Fleet:
         self.robots.check_run(robot, ack.magic, link)
         return self._acknowledge(robot, link, ack, self._clock.time())
 
-    def take_pose(self, robot: str, link: str, pose: SendPos) -> Awaitable[None] | None:
+    def accept_pose(self, robot: str, link: str, pose: SendPos) -> Awaitable[None] | None:
         """Process a position as :meth:`receive` does, at once; return the rest, to be awaited.
 
         The rest is the storing of a command that the robot has carried out, nearly always None.
@@ -356,8 +356,8 @@ class Fleet:
             return self._consider_pose(robot, link, pose, now)
         return self._moved(robot, pose, now) if moved else None
 
-    def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
-        """Process positions of many robots, each named once, as :meth:`take_pose` does for one.
+    def accept_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
+        """Process positions of many robots, each named once, as :meth:`accept_pose` does for one.
 
         Return for some the rest to be awaited, or the error in the position.
         """

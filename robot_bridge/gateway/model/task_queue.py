@@ -222,7 +222,7 @@ def remove_task(queue: Queue, task: str) -> Queue:
     return queue.with_tasks([other for other in queue.tasks if other is not found], edited=True)
 
 
-def put_task_first(queue: Queue, task: str) -> Queue:
+def move_task_first(queue: Queue, task: str) -> Queue:
     """Return the queue with a waiting task first, and the current one behind it; raises RefusedError."""
     found = _waiting(queue, task)
     rest = [return_task(other) for other in queue.tasks if other is not found]

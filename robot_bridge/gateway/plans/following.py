@@ -315,7 +315,7 @@ class FollowedPlans:
 
     async def follow(self, one: FollowedPlan) -> bool:
         """Update the plan from its queues, robots and roads; return false when nothing has changed."""
-        await self._context.registry.look_elsewhere(one.plan.staying)
+        await self._context.registry.read_elsewhere(one.plan.staying)
         closed = None if self.planner is None else self.planner.closed
         present = [robot for robot in one.plan.staying if robot in self._context.robots]
         seen = [(robot, self.queue(robot), self._context.robots.get(robot).state) for robot in present]
@@ -370,7 +370,7 @@ class FollowedPlans:
         """Update the progress from queues and the database."""
         progress = one.progress
         for robot, queue in found.items():
-            progress.take_queue(queue_report(queue, self._context.robots.get(robot).state))
+            progress.apply_queue(queue_report(queue, self._context.robots.get(robot).state))
         queued = {task.id for queue in found.values() for task in queue.tasks}
         gone = [task for task in progress.stops if task not in queued and task not in one.ended]
         if not gone:
@@ -384,7 +384,7 @@ class FollowedPlans:
                 one.ended.add(task)
         query = GetPlacements(plan=one.plan.name, limit=MOST_PLACED)
         for report in await self._context.database.run(records.newest_placed_cones, query):
-            progress.take_placement(report)
+            progress.apply_placement(report)
 
     async def _recalled(self, plan: DrivenPlan) -> FollowedPlan:
         """Return an ended plan with its outcome."""

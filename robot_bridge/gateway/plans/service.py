@@ -314,7 +314,7 @@ class PlanService:
         async with self._plans.lock:
             await self._plans.refresh()
             one = self._plans.get(name) if revision is None else self._plans.of_revision(name, revision)
-            await self._context.registry.look_elsewhere(one.plan.staying)
+            await self._context.registry.read_elsewhere(one.plan.staying)
             try:
                 yield one
             except PlanMovedError as error:

@@ -116,7 +116,7 @@ class QueueRegistry:
     def get(self, robot: str) -> Queue:
         """Return a robot's queue as stored last; an empty one where there is none.
 
-        One of another gateway is as it was when last held here, or read by :meth:`look_elsewhere`.
+        One of another gateway is as it was when last held here, or read by :meth:`read_elsewhere`.
         """
         known = self._elsewhere if self._is_elsewhere(robot) else self._queues
         return known.get(robot) or Queue(robot)
@@ -131,7 +131,7 @@ class QueueRegistry:
         others = self._robots.commanded_elsewhere()
         return [*own, *(await self._database.read(queues.load, others)).values()] if others else own
 
-    async def look_elsewhere(self, robots: Iterable[str]) -> None:
+    async def read_elsewhere(self, robots: Iterable[str]) -> None:
         """Read the changed queues of those of ``robots`` that other gateways have.
 
         :raises StoreError: when this fails.

@@ -230,7 +230,7 @@ class QueueEditor:
     async def make_current(self, request: messages.MakeCurrent, operator: str) -> messages.QueueReport:
         """Make a task the current one."""
         async with self._editing(request.robot, request.revision) as queue:
-            return await self._edit(queue, task_queue.put_task_first(queue, request.task), operator)
+            return await self._edit(queue, task_queue.move_task_first(queue, request.task), operator)
 
     @handles(messages.PauseQueue)
     async def pause(self, request: messages.PauseQueue, operator: str) -> messages.QueueReport:

@@ -249,7 +249,7 @@ class QueueRunner:
                 async with asyncio.timeout(LOOK_INTERVAL):
                     await self._event.wait()
             except TimeoutError:
-                self.look_at_all()
+                self.schedule_all()
             await self.advance()
 
     def schedule(self, robot: str) -> None:
@@ -270,7 +270,7 @@ class QueueRunner:
             # It has paused the queue in its own transaction.
             self._registry.doubt(report.robot)
 
-    def look_at_all(self) -> None:
+    def schedule_all(self) -> None:
         """Schedule every queue with something to do; report queues of robots with changed liveness."""
         for robot in self._registry.names():
             queue = self._registry.get(robot)

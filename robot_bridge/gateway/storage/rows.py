@@ -154,7 +154,7 @@ def add_messages(connection: Connection, table: Table, names: Sequence[str], row
             add_rows(connection, table, names, together)
 
 
-def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+def upsert_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
     """Insert ``rows``, replacing those with the same first of ``names``, which are all columns."""
     if _takes_json(connection):
         for text in _as_json(_last_of_each(rows)):

@@ -91,7 +91,7 @@ class TrafficControl:
         async with self._lock:
             await self._waiting.catch_up()
             if self._waiting:
-                await self._waiting.see_to(self.situation())
+                await self._waiting.end_waits(self.situation())
         if not listened_to or time.monotonic() < self._next:
             return
         began, found = time.monotonic(), list[messages.ConflictReport]()

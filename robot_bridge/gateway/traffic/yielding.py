@@ -286,7 +286,7 @@ class YieldManager:
     async def catch_up(self) -> None:
         """Load robots that may be stored as waiting without being known here; raises StoreError."""
         if self._doubtful:
-            await self._commands.look_up()
+            await self._commands.resolve_uncertain_commit()
             # Before the rows are read: a robot that comes meanwhile may not be among them.
             self._doubtful = False
             try:
@@ -345,7 +345,7 @@ class YieldManager:
                 f"GetPath: robot {robot!r} waits for {row.other!r}; it is told its way when that has passed"
             )
 
-    async def see_to(self, seen: TrafficSnapshot) -> None:
+    async def end_waits(self, seen: TrafficSnapshot) -> None:
         """Send on the robots with an expired wait and a free path.
 
         Robots with an unknown present position are left for later.

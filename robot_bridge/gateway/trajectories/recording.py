@@ -115,7 +115,7 @@ class TrajectoryRecorder:
                 self._drop_oldest()
 
     def next_batch(self, now: float) -> list[PackedFix]:
-        """Return the oldest positions to be stored; failed ones must be passed to :meth:`give_back`."""
+        """Return the oldest positions to be stored; failed ones must be passed to :meth:`requeue`."""
         # Not each time: it checks every robot, and this is called for every few requests.
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
             self._looked_at = now
@@ -129,7 +129,7 @@ class TrajectoryRecorder:
         """Queue the last position of every robot, however near the previous one: no more will come."""
         self._wait(self._thinning.silent())
 
-    def give_back(self, fixes: Sequence[PackedFix]) -> None:
+    def requeue(self, fixes: Sequence[PackedFix]) -> None:
         """Requeue positions that could not be stored, as the oldest."""
         self._waiting.extendleft(reversed(fixes))
         self._drop_oldest()
@@ -207,7 +207,7 @@ class TrajectoryWriter:
         self._unsaved.difference_update(robots)
         self._stored.difference_update(robots)
 
-    def take_removed(self) -> set[str]:
+    def collect_removed(self) -> set[str]:
         """Return the robots removed from the database by others since the last call."""
         removed, self._removed = self._removed, set()
         return removed
@@ -250,7 +250,7 @@ class TrajectoryWriter:
                 fixes = []
                 await write(work, *arguments, fixes)
             except Exception:
-                self._recorder.give_back(fixes)
+                self._recorder.requeue(fixes)
                 raise
             if fixes and not lasting:
                 self._jotted.append((session, fixes))
@@ -275,7 +275,7 @@ class TrajectoryWriter:
                     ]
                     written = await self._write(known, fixes)
                 except Exception:
-                    self._recorder.give_back(fixes)
+                    self._recorder.requeue(fixes)
                     self._unsaved |= unsaved
                     raise
                 if last:
@@ -310,7 +310,7 @@ class TrajectoryWriter:
         try:
             await self._write([], fixes)
         except Exception:
-            self._recorder.give_back(fixes)
+            self._recorder.requeue(fixes)
             raise
 
     def _requeue_lost(self) -> bool:
@@ -322,7 +322,7 @@ class TrajectoryWriter:
         forgotten = [fixes for number, fixes in self._jotted if number != session]
         self._jotted = [(number, fixes) for number, fixes in self._jotted if number == session]
         for fixes in reversed(forgotten):
-            self._recorder.give_back(fixes)
+            self._recorder.requeue(fixes)
         return bool(forgotten)
 
 

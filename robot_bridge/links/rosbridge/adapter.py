@@ -370,7 +370,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
                 known = len(self._robots)
                 self._find(list(self._watch.graph.topics), self._watch.graph, make)
                 if len(self._robots) > known:
-                    self._watch.look_soon()
+                    self._watch.request_read()
             for robot in self._robots.values():
                 self._lead(robot, partial(robot.step, now))
             self._report(link)

@@ -66,7 +66,7 @@ class GraphWatch:
         self.fault: str | None = None
         self._soon = asyncio.Event()
 
-    def look_soon(self) -> None:
+    def request_read(self) -> None:
         """Read again at once: the topics of interest have changed since the last read."""
         self._soon.set()
 

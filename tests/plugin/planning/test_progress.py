@@ -80,14 +80,14 @@ class Driven:
         ]
         ended = [t for t in reversed(all_of_them) if t not in open_ones][:ended_known]
         report = QueueReport(robot, 1, QueueState.RUNNING, robot_state, open_ones, ended)
-        self.progress.take_queue(report)
+        self.progress.apply_queue(report)
         return report
 
     def placed(self, robot, number, cone):
         report = PlacementReport(
             number, "t", robot, 1.0, 0.0, 1.1, 0.0, 0.0, 0.1, BEGAN + number, "c", cone=cone, plan="plan-1"
         )
-        self.progress.take_placement(report)
+        self.progress.apply_placement(report)
 
 
 @pytest.fixture
@@ -125,7 +125,7 @@ def test_what_ended_and_what_was_placed_is_done_also_when_nobody_listened(driven
 
 def test_a_cone_of_another_plan_is_none_of_this_one(driven):
     report = PlacementReport(9, "t", "r1", 1, 0, 1, 0, 0.0, 0.0, BEGAN, "c", cone="c1", plan="another")
-    driven.progress.take_placement(report)
+    driven.progress.apply_placement(report)
     assert driven.progress.done == set()
 
 
@@ -133,9 +133,9 @@ def test_what_is_collected_is_done_when_it_was_collected_not_when_it_was_placed(
     facts = {"c1 #5": ConeFacts("c1", "row", placement=5)}
     progress = PlanProgress("plan-2", facts, BEGAN)
     values = (5, "t", "r1", 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, BEGAN, "c")
-    progress.take_placement(PlacementReport(*values, cone="c1", plan="plan-1"))
+    progress.apply_placement(PlacementReport(*values, cone="c1", plan="plan-1"))
     assert progress.done == set()
-    progress.take_placement(PlacementReport(*values, cone="c1", plan="plan-1", collected_at=BEGAN + 9))
+    progress.apply_placement(PlacementReport(*values, cone="c1", plan="plan-1", collected_at=BEGAN + 9))
     assert progress.done == {"c1 #5"}
 
 
@@ -200,7 +200,7 @@ def test_a_failed_cone_is_given_up_or_tried_again_as_the_operator_wants(driven):
     queues = {"r1": driven.tell("r1", [DONE]), "r2": driven.tell("r2", [])}
     task = driven.task("r1", 1, FAILED, reason="a wall")
     queues["r1"] = QueueReport("r1", 2, QueueState.PAUSED, RobotState.FRESH, [task])
-    driven.progress.take_queue(queues["r1"])
+    driven.progress.apply_queue(queues["r1"])
     trouble = problem_of(driven.plan, driven.progress, queues)
     assert trouble.failed == (("c2", "a wall"),)
     for again, expected in ((False, {"c2": "a wall"}), (True, {})):

@@ -185,7 +185,7 @@ class Play:
         if self.turns % SAVE_EVERY == 0:
             await _tried(self.fleet.save())
         await _tried(self.fleet.watch_roads())
-        self.fleet.driving.look_at_all()
+        self.fleet.driving.schedule_all()
         for _ in range(3):
             await self.fleet.driving.advance()
         if self.database.dead:

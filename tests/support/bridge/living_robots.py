@@ -231,7 +231,7 @@ class WebSocketRobot(Robot):
         return True
 
     async def _say_where_it_is(self):
-        if (rest := self.play.fleet.take_pose(self.name, self.link, self.position())) is not None:
+        if (rest := self.play.fleet.accept_pose(self.name, self.link, self.position())) is not None:
             await rest
 
     async def _connect(self):

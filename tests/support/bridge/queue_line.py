@@ -32,7 +32,7 @@ class Line:
 
     async def advance(self):
         """Let the gateway do what is due."""
-        self.yard.fleet.driving.look_at_all()
+        self.yard.fleet.driving.schedule_all()
         for _ in range(4):
             await self.yard.fleet.driving.advance()
 

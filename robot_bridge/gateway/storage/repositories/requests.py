@@ -270,7 +270,7 @@ def remove_own(connection: Connection, answers: Sequence[tuple[str, int]]) -> No
         remove_answers(connection, [id for id, robot in found if (robot, id) in own])
 
 
-def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
+def withdraw_unread(connection: Connection, ids: Sequence[int]) -> set[int]:
     """Delete those of some answers that were not read and deleted before; return their ids.
 
     One by one: only for a single deletion does every server report whether it found its row, after waiting

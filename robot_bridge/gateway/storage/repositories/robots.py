@@ -16,7 +16,7 @@ from ....core.messages.base import DeskRequest
 from ....core.messages.robots import Abort, SendPos
 from ....core.messages.safety import PathDeclaration
 from ...model.robots import Robot
-from ..rows import Row, is_one_of, put_rows, readable
+from ..rows import Row, is_one_of, readable, upsert_rows
 from ..schema import robots
 from . import requests
 
@@ -43,7 +43,7 @@ def row(robot: Robot) -> Row:
 
 def save(connection: Connection, rows: Sequence[Row]) -> None:
     """Write the states of robots, replacing the old ones."""
-    put_rows(connection, robots, NAMES, rows)
+    upsert_rows(connection, robots, NAMES, rows)
 
 
 def note_run(connection: Connection, robot: Robot, magic: int) -> bool:

@@ -31,7 +31,7 @@ class SmallQueues:
                 "add_tasks": self._edit(self._added),
                 "move_task": self._edit(lambda q, p: task_queue.move_task(q, p["task"], p.get("before"))),
                 "remove_task": self._edit(lambda q, p: task_queue.remove_task(q, p["task"])),
-                "make_current": self._edit(lambda q, p: task_queue.put_task_first(q, p["task"])),
+                "make_current": self._edit(lambda q, p: task_queue.move_task_first(q, p["task"])),
                 "resume_queue": self._edit(lambda q, p: task_queue.resume_queue(q, "anna", time.time())),
             }
         )

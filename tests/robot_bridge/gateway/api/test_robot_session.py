@@ -63,7 +63,7 @@ def connection():
 def own(connection):
     """A robot that has said Ready to a gateway in which everything fails."""
     fleet = SimpleNamespace(
-        take_pose=fail,
+        accept_pose=fail,
         receive=fail_later,
         acknowledge=fail,
         emergency=SimpleNamespace(answered=fail),
@@ -164,7 +164,7 @@ async def test_a_robot_that_acknowledges_ever_more_waits_for_what_is_being_store
         await free.wait()
 
     own.session._fleet.acknowledge = acknowledge
-    own.session._fleet.take_pose = lambda *_: None
+    own.session._fleet.accept_pose = lambda *_: None
 
     async def say(count):
         for id in range(count):
@@ -239,7 +239,9 @@ def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
 def link(connection):
     """A link that may speak for all robots, at a gateway in which everything fails."""
     connection.identity = SimpleNamespace(name="agvs")
-    fleet = SimpleNamespace(take_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines())
+    fleet = SimpleNamespace(
+        accept_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines()
+    )
     gate = SimpleNamespace(robots_of_link=lambda _visitor: ("*",), limits=None)
     return LinkConnection(fleet, connection, gate, RobotSessions(ConnectionClaims()))
 

@@ -59,7 +59,7 @@ async def test_a_queue_in_trouble_holds_up_no_other_and_is_looked_at_again(
     await driving.advance()
     assert (two.waiting("r1"), two.waiting("r2")) == ([], ["SetPath"])
     assert said in caplog.text
-    driving.look_at_all()
+    driving.schedule_all()
     await driving.advance()
     assert two.waiting("r1") == ["SetPath"]
 
@@ -78,12 +78,12 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
     waiting, seen_to = roads.fleet.roads.waiting, []
     monkeypatch.setitem(waiting._rows, "r2", waiting._rows["r1"]._replace(robot="r2", other="r1"))
 
-    async def see_to(row, _seen):
+    async def end_waits(row, _seen):
         if row.robot == "r1":
             raise error
         seen_to.append(row.robot)
 
-    monkeypatch.setattr(waiting, "_send_on", see_to)
+    monkeypatch.setattr(waiting, "_send_on", end_waits)
     await roads.fleet.watch_roads()
     assert seen_to == ["r2"]
     assert said in caplog.text

@@ -20,17 +20,17 @@ async def driving(yard):
     await yard.at(20.0, 40.0)
     await yard.send("a")
     await yard.acknowledge_all()
-    assert yard.fleet.take_pose("r1", "websocket", SendPos(49.0, 40.0, 0.0, 1.0, t=8.0)) is None
+    assert yard.fleet.accept_pose("r1", "websocket", SendPos(49.0, 40.0, 0.0, 1.0, t=8.0)) is None
     yard.now += 0.1
     return yard
 
 
 def take_one(yard, pose):
-    return yard.fleet.take_pose("r1", "websocket", pose)
+    return yard.fleet.accept_pose("r1", "websocket", pose)
 
 
 def take_many(yard, pose):
-    rests = yard.fleet.take_poses("websocket", [("r1", pose)])
+    rests = yard.fleet.accept_poses("websocket", [("r1", pose)])
     assert [robot for robot, _ in rests] in ([], ["r1"])
     rest = rests[0][1] if rests else None
     if isinstance(rest, Exception):

@@ -17,18 +17,18 @@ async def test_a_task_waits_until_what_it_comes_after_is_done_by_another_robot(l
     )
     assert await line.sent() == []
     await line.set(task("b", "place", cone="B"), task("c", "place", cone="C"), robot="r2")
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
     assert (await line.report()).tasks[0].reason == "waits for cone B of r2, cone C of r2"
     await line.reach(*PLACES["b"], robot="r2")
     await line.yard.restart()
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
     report = await line.report()
     assert (report.state.value, report.tasks[0].reason) == ("running", "waits for cone C of r2")
     assert await line.sent() == []
     await line.reach(*PLACES["c"], robot="r2")
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
     assert await line.sent() == [PLACES["a"]]
     report = await line.report()
@@ -40,13 +40,13 @@ async def test_what_was_not_put_down_is_waited_for_and_said(line):
     await line.set(task("a", after=["task-000b"]))
     (row,) = await line.yard.deliver("r2")
     await line.yard.ack(row.id, "r2", ok=False, reason="too steep")
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
     assert (await line.report()).tasks[0].reason == "waits for cone B of r2, which failed"
     await line.queues.remove(RemoveTask("r2", (await line.report("r2")).revision, "task-000b"), "Ada")
-    line.yard.fleet.driving.look_at_all()
+    line.yard.fleet.driving.schedule_all()
     await line.advance()
     assert (await line.report()).tasks[0].reason == (
         "waits for task task-000b, which was removed at r2: give this task anew without it"

@@ -99,7 +99,7 @@ async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_sa
     await each.at(hold.x, hold.y)
     there = 44.0 - math.dist((hold.x, hold.y), (44.0, 22.0))
     await each.at(there, 22.0, v=1.0, robot="r2")
-    each.fleet.driving.look_at_all()
+    each.fleet.driving.schedule_all()
     await each.fleet.driving.advance()
     await each.fleet.watch_roads()
     await each.fleet.driving.advance()

@@ -53,7 +53,7 @@ class Story:
             "append": lambda: task_queue.add_tasks(queue, [task(first)], None, known, "Ada", 1.0),
             "move": lambda: task_queue.move_task(queue, first, second),
             "remove": lambda: task_queue.remove_task(queue, first),
-            "first": lambda: task_queue.put_task_first(queue, first),
+            "first": lambda: task_queue.move_task_first(queue, first),
             "resume": lambda: task_queue.resume_queue(queue, "Ada", 1.0),
         }
         self.edited(after[kind]())

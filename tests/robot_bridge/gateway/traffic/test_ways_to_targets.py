@@ -275,6 +275,6 @@ async def test_a_task_waits_for_its_way_until_the_robot_has_said_where_it_is(roa
     assert await sent(roads) == []
     assert (await queue_of(roads)).tasks[0].reason == "waits for the robot to say where it is"
     await roads.at(*START)
-    roads.fleet.driving.look_at_all()
+    roads.fleet.driving.schedule_all()
     await roads.fleet.driving.advance()
     assert [op for op, _ in await sent(roads)] == ["SetPath"]

@@ -100,7 +100,7 @@ def test_what_could_not_be_stored_waits_in_its_order(recorder):
     taken = recorder.next_batch(3.0)
     recorder.observe([fix(3, x=3.0)])
     assert recorder.waiting == 1
-    recorder.give_back(taken)
+    recorder.requeue(taken)
     assert recorder.next_batch(4.0) == [pack(fix(n, x=n)) for n in range(4)]
 
 
@@ -110,7 +110,7 @@ def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
     for n in range(1000, 1200):
         taken = recorder.next_batch(n)
         recorder.observe([fix(n, x=n)])
-        recorder.give_back(taken)
+        recorder.requeue(taken)
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
     assert recorder.next_batch(1200.0)[0] == pack(fix(200, x=200))
     assert [record.levelname for record in caplog.records] == ["ERROR"]

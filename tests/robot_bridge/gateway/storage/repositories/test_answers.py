@@ -137,9 +137,9 @@ def test_a_robot_removes_only_its_own(connection):
 
 def test_of_those_taken_back_it_is_told_which_were_still_there(connection):
     requests.add_numbered(connection, [("r1", TARGET)] * 3)
-    assert requests.take_back(connection, [1, 3, 9]) == {1, 3}
-    assert requests.take_back(connection, [1, 2]) == {2}
-    assert requests.take_back(connection, []) == set()
+    assert requests.withdraw_unread(connection, [1, 3, 9]) == {1, 3}
+    assert requests.withdraw_unread(connection, [1, 2]) == {2}
+    assert requests.withdraw_unread(connection, []) == set()
 
 
 def test_kinds_are_removed_for_one_robot_or_for_all(connection):
