@@ -7,6 +7,7 @@ import logging
 import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
@@ -35,6 +36,8 @@ from .active_command import CommandOrder
 from .service import CommandService
 
 log = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 STORED_WITHIN = 1.0
 """seconds after which an Abort that is not stored yet is sent over open connections as well, and written
@@ -118,7 +121,19 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-        storing = start_task(self._commands.issue(orders))
+        return await self.send_if_unstored(
+            orders, start_task(self._commands.issue(orders)), "The Abort", "it"
+        )
+
+    async def send_if_unstored(
+        self, orders: list[CommandOrder], storing: asyncio.Task[T], change: str, abort: str = "an Abort"
+    ) -> T:
+        """Return the result of ``storing``, of which Aborts are a part; see :data:`STORED_WITHIN`.
+
+        ``change`` and ``abort`` name in an error what is not stored, and what was sent.
+
+        :raises StoreError: with the robots that it was sent to; else as ``storing``.
+        """
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):
@@ -129,7 +144,7 @@ class CommandRequests:
         except StoreError as error:
             recipients = f"sent to {listed_names(sent)} all the same" if sent else "sent to no robot"
             then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
-            raise StoreError(f"{error}. The Abort is not stored; it was {recipients}{then}") from error
+            raise StoreError(f"{error}. {change} is not stored; {abort} was {recipients}{then}") from error
 
     def _send_unstored(self, order: CommandOrder) -> bool:
         is_sent = False
@@ -138,9 +153,7 @@ class CommandRequests:
                 is_sent |= link(order.robot, f"abort-{order.command}")
         return is_sent
 
-    async def _write_unstored(
-        self, orders: list[CommandOrder], storing: asyncio.Future[list[CommandReport]]
-    ) -> list[str]:
+    async def _write_unstored(self, orders: list[CommandOrder], storing: asyncio.Task[Any]) -> list[str]:
         """Write Aborts without their commands for robots on SQL; return those for which that was done.
 
         Once ``storing`` has succeeded nothing is written: it would withdraw what was asked for since.

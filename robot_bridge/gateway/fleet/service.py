@@ -139,7 +139,7 @@ class Fleet:
         )
         rules.add(self.emergency)
         rules.add(self.roads.closures)
-        self.pauses = PauseService(self.queue_context)
+        self.pauses = PauseService(self.queue_context, self.orders)
         self.geofence = GeofenceWatch(
             site,
             self.robots,

@@ -23,10 +23,12 @@ from ...core.messages.records import (
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
+from ..commands.requests import CommandRequests
 from ..model import task_queue
 from ..model.events import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
+from ..storage.database import start_task
 from ..storage.repositories import commands, queues, records
 from ..storage.repositories.robots import OwnerFence
 from . import task_life
@@ -42,9 +44,10 @@ _TRIES = 3
 
 
 class PauseService:
-    """Pauses robots."""
+    """Pauses robots. One whose pause cannot be stored at once is sent an Abort by ``orders`` all the same."""
 
-    def __init__(self, context: QueueContext) -> None:
+    def __init__(self, context: QueueContext, orders: CommandRequests) -> None:
+        self._orders = orders
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
@@ -60,6 +63,12 @@ class PauseService:
         that is too long to be kept, and StoreError.
         """
         self._robots.check_known(request.robot)
+        pausing = start_task(self._pause_held(request, operator))
+        doing = self._commands.carried_out(request.robot)
+        aborts = [] if doing is None else [self._abort(request, operator, doing)]
+        return await self._orders.send_if_unstored(aborts, pausing, "The pause")
+
+    async def _pause_held(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         async with self._registry.holding([request.robot]):
             for _ in range(_TRIES - 1):
                 try:
@@ -68,6 +77,24 @@ class PauseService:
                     # Its task ended in between, or it was given another one.
                     continue
             return await self._pause(request, operator)
+
+    def _abort(
+        self,
+        request: messages.PauseRobot,
+        operator: str,
+        doing: ActiveCommand | None,
+        task: str | None = None,
+    ) -> CommandOrder:
+        """Return the Abort of what a robot does; ``task`` is that of its queue by which it is kept."""
+        return CommandOrder(
+            str(uuid.uuid4()),
+            request.robot,
+            Abort(),
+            operator,
+            because("paused", request.reason),
+            aborts=None if doing is None else doing.report.command,
+            task=task,
+        )
 
     async def _pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         robot, queue = request.robot, self._registry.get(request.robot)
@@ -78,15 +105,7 @@ class PauseService:
         if own is None and not kept:
             return await self._registry.save(queue, queue.paused(reason, operator, now))
         after = pause_with_task(queue, kept, reason, operator, now)
-        abort = CommandOrder(
-            str(uuid.uuid4()),
-            robot,
-            Abort(),
-            operator,
-            because("paused", request.reason),
-            aborts=None if doing is None else doing.report.command,
-            task=(own or kept[0]).id,
-        )
+        abort = self._abort(request, operator, doing, (own or kept[0]).id)
         write = partial(queues.save, before=queue, after=after)
         await self._registry.stored([robot], self._commands.issue([abort], write))
         return self._registry.accept(after)

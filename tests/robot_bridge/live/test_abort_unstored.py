@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
+import time
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,8 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.robots.robot_wires import SqlRobot
 from tests.support.wire import RefusedError
+
+MOTIONS = ("SetPath", "SetPosEnd")
 
 
 @pytest.fixture
@@ -79,6 +82,35 @@ def test_an_abort_that_could_not_be_stored_outlives_the_gateway(bridge):
     robot.plug_in(1)
     assert [call for call in robot.calls if call["method"] == "SetPosEnd"] == []
     wait_until(lambda: not Path(f"{bridge.file}.aborts").exists())
+
+
+def stand(robot):
+    robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0, "t": time.time()})
+
+
+def test_a_robot_stands_whose_pause_cannot_be_stored_and_its_queue_waits_afterwards(bridge):
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    robot.plug_in(1)
+    stand(robot)
+    tasks = [{"task": f"task-000{n}", "kind": "drive", "x": 30.0 + n, "y": 8.0} for n in (1, 2)]
+    desk.ask("set_queue", {"robot": "r1", "revision": 0, "tasks": tasks})
+    (driven,) = robot.until(lambda: [call for call in robot.calls if call["method"] in MOTIONS])
+    robot.say(driven["id"])
+    robot.calls.clear()
+    desk.until(lambda: "acknowledged" in {command["state"] for command in desk.commands.values()})
+    with locked(bridge):
+        text = "The pause is not stored; an Abort was sent to r1 all the same; it is stored and sent as"
+        with pytest.raises(RefusedError, match=text):
+            desk.ask("pause_robot", {"robot": "r1"}, 30.0)
+        assert robot.wait_for("Abort")["id"].startswith("abort-")
+    abort = robot.wait_for("Abort", 30.0)
+    stand(robot)
+    robot.say(abort["id"])
+    queue = wait_until(
+        lambda: next((q for q in desk.ask("get_queue")["queues"] if q["state"] == "paused"), None)
+    )
+    assert [task["task"] for task in queue["tasks"]] == ["task-0001", "task-0002"]
+    assert [call for call in robot.calls if call["method"] in MOTIONS] == []
 
 
 LOCKS = {
