@@ -141,4 +141,6 @@ def new_database(request):
     memory = Path("/dev/shm")
     quick = memory if os.access(memory, os.W_OK) else None
     with tempfile.TemporaryDirectory(prefix="fleet-databases-", dir=quick) as folder:
-        yield DatabaseMaker(Path(folder), lambda kind: request.getfixturevalue(f"{kind}_server"))
+        maker = DatabaseMaker(Path(folder), lambda kind: request.getfixturevalue(f"{kind}_server"))
+        yield maker
+        maker.close()

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from sqlalchemy import make_url
+
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.schema import metadata
@@ -42,6 +44,9 @@ select md5(string_agg(made, '; ' order by made)) from (
   union all
   select 'setting ' || concat_ws(',', setrole, setconfig) from pg_db_role_setting
     where setdatabase = (select oid from pg_database where datname = current_database())
+  union all
+  select 'owner ' || concat_ws(',', rolcanlogin, rolconnlimit, rolvaliduntil) from pg_roles
+    where rolname = current_user
 ) as everything
 """
 """What a database of PostgreSQL is made of besides its rows, as one word."""
@@ -51,11 +56,13 @@ select count(*) from pg_stat_activity
 """
 BEGIN_AT_ONE = "select setval(oid, 1, false) from pg_class where relkind = 'S'"
 
-MADE_LATER = (
-    "select 1 from information_schema.check_constraints where constraint_schema",
-    "select 1 from information_schema.triggers where trigger_schema",
-)
+MADE_LATER = """
+select 1 from information_schema.check_constraints where constraint_schema = database()
+union all select 1 from information_schema.triggers where trigger_schema = database()
+"""
 """What the tables of MariaDB have only where a test has made it."""
+FULL = " union all ".join(f"(select '{name}' from {name} limit 1)" for name in metadata.tables)
+"""Which tables have rows."""
 
 
 class DatabaseMaker:
@@ -69,6 +76,8 @@ class DatabaseMaker:
         self._used = ""
         """The last database of PostgreSQL that was given away."""
         self._as_made = ""
+        self._clients: dict[str, DatabaseClient] = {}
+        """Connections, by kind: a server takes longer to open one than to look through a database."""
 
     def __call__(self, kind: str) -> str:
         """Return the URL of a database of ``kind`` that nothing is in.
@@ -106,9 +115,9 @@ class DatabaseMaker:
 
     def _copied_or_emptied(self) -> str:
         """A copy costs PostgreSQL 7 MB in 300 files, which it takes longer to remove than to write."""
-        if not self._used or not _emptied_as_made(self._used, self._as_made):
+        if not self._used or not self._do(self._used, _emptied_as_made, self._as_made):
             self._used = self._copied()
-            self._as_made = _made_of(self._used)
+            self._as_made = str(self._do(self._used, _made_of))
         return self._used
 
     def _copied(self) -> str:
@@ -116,52 +125,57 @@ class DatabaseMaker:
         return str(self._server("postgresql").copied_database(model))
 
     def _emptied(self, url: str | None) -> str:
-        if url is None or not _truncated(url):
+        if url is None or not self._do(url, _truncated):
             url = self._models["mariadb"] = self._first("mariadb")
         return url
 
+    def close(self) -> None:
+        """Close the connections."""
+        for client in self._clients.values():
+            client.close()
 
-def _made_of(url: str) -> str:
-    client = DatabaseClient(url)
-    try:
-        return str(client.sql(MADE)[0][0])
-    finally:
-        client.close()
+    def _do(self, url: str, work: Callable[..., Any], *arguments: Any) -> Any:
+        """Do ``work(client, ...)`` on a database, on a new connection where a test has cut the last one.
 
-
-def _emptied_as_made(url: str, as_made: str) -> bool:
-    """Empty a database of PostgreSQL, unless somebody is connected to it or it is made otherwise by now."""
-    from psycopg import OperationalError
-
-    client = DatabaseClient(url)
-    try:
-        if client.sql(CLIENTS) != [(0,)] or client.sql(MADE) != [(as_made,)]:
-            return False
-        looks = " union all ".join(f"(select '{name}' from {name} limit 1)" for name in metadata.tables)
-        full = {name for (name,) in client.sql(looks)}
-        for table in reversed(metadata.sorted_tables):
-            if table.name in full:
-                client.sql(f"delete from {table.name}")  # to truncate a table takes ten times as long
-        client.sql(BEGIN_AT_ONE)
-        return True
-    except OperationalError:  # its owner is let in no more
+        False where nobody is let in any more.
+        """
+        kind = make_url(url).drivername
+        client = self._clients.get(kind)
+        if client is None or client.url != make_url(url):
+            if client is not None:
+                client.close()
+            client = self._clients[kind] = DatabaseClient(url)
+        lost = client.driver.OperationalError, client.driver.InterfaceError
+        for _ in range(2):
+            try:
+                return work(client, *arguments)
+            except lost:
+                client.close()
         return False
-    finally:
-        client.close()
 
 
-def _truncated(url: str) -> bool:
-    client = DatabaseClient(url)
-    try:
-        there = {name for (name,) in client.sql("show tables")}
-        if there != {*metadata.tables, "alembic_version"}:
-            return False
-        if any(client.sql(f"{look} = database()") for look in MADE_LATER):
-            return False
-        for table in metadata.tables:
-            # What was deleted has used up numbers; only where rows come and go do tests look at them.
-            if table in ("rr", "sa") or client.sql(f"select 1 from {table} limit 1"):
-                client.sql(f"truncate table {table}")
-        return True
-    finally:
-        client.close()
+def _made_of(client: DatabaseClient) -> str:
+    return str(client.sql(MADE)[0][0])
+
+
+def _emptied_as_made(client: DatabaseClient, as_made: str) -> bool:
+    """Empty a database of PostgreSQL, unless somebody is connected to it or it is made otherwise by now."""
+    if client.sql(CLIENTS) != [(0,)] or client.sql(MADE) != [(as_made,)]:
+        return False
+    full = {name for (name,) in client.sql(FULL)}
+    for table in reversed(metadata.sorted_tables):
+        if table.name in full:
+            client.sql(f"delete from {table.name}")  # to truncate a table takes ten times as long
+    client.sql(BEGIN_AT_ONE)
+    return True
+
+
+def _truncated(client: DatabaseClient) -> bool:
+    """Empty a database of MariaDB, unless it is made otherwise by now."""
+    there = {name for (name,) in client.sql("show tables")}
+    if there != {*metadata.tables, "alembic_version"} or client.sql(MADE_LATER):
+        return False
+    # What was deleted has used up numbers; only where rows come and go do tests look at them.
+    for table in {"rr", "sa"}.union(name for (name,) in client.sql(FULL)):
+        client.sql(f"truncate table {table}")
+    return True
