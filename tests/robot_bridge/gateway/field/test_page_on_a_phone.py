@@ -15,6 +15,8 @@ from tests.support.processes import freeze
 SLOW = BUSY * 15_000
 AHEAD = "Date.now = (now => () => now() + 3.2e10)(Date.now)"
 """A phone whose clock is a year ahead."""
+SELDOM = ["--rate", "2"]
+"""How often robots say where they are, in Hz: the page shows them once a second."""
 
 
 @pytest.fixture(scope="module")
@@ -42,9 +44,9 @@ def robots(bridge, tokens, accounts, tmp_path_factory):
         file = folder / name
         file.write_text(accounts.do("robots", "token", name), encoding="utf-8")
         file.chmod(0o600)
-        processes[name] = bridge.start_robot(name, pose, options=["--token-file", file])
+        processes[name] = bridge.start_robot(name, pose, options=["--token-file", file, *SELDOM])
     desk = bridge.desk(additional_headers={"Authorization": f"Bearer {tokens['supervisor']}"})
-    desk.ask("subscribe", {"rate": 10})
+    desk.ask("subscribe", {"rate": 2})
     desk.wait_for_robots("r1", "r2", "r3")
     desk.processes = processes
     return desk

@@ -23,6 +23,8 @@ HELD, GOES_ON = 19, 18
 SLEPT = "Date.now = (now => () => now() + 6e5)(Date.now)"
 """Ten minutes: performance.now() stands still in a phone that sleeps, and its clock does not."""
 AMBER = (179, 107, 0)
+SELDOM = ["--rate", "2"]
+"""How often robots say where they are, in Hz: the page shows them once a second."""
 POSES = {"r1": (20.0, 8.0, 0.0), "r2": (100.0, 60.0, 1.5), "r3": (150.0, 120.0, 3.0)}
 
 
@@ -39,9 +41,9 @@ def site(sample_site, tmp_path_factory):
 def bridge(start_bridge, site):
     bridge = start_bridge(site)
     for name, pose in POSES.items():
-        bridge.start_robot(name, pose)
+        bridge.start_robot(name, pose, options=SELDOM)
     desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 10})
+    desk.ask("subscribe", {"rate": 2})
     desk.wait_for_robots(*POSES)
     return bridge
 
