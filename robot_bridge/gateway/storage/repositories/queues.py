@@ -63,6 +63,12 @@ _REVISIONS_OF = text(
     "select q.robot, q.revision from queues q join robot_owners o on o.robot = q.robot and o.gw = :gw"
 )
 # Each robot's own rows by the index, newest first: a robot in use for years has thousands of ended ones.
+_NEWEST_ENDED_OF_ONE = (
+    select(queue_tasks)
+    .where(queue_tasks.c.robot == bindparam("of"), beside_the_time(queue_tasks.c.state).in_(_ENDED))
+    .order_by(queue_tasks.c.ended_at.desc(), queue_tasks.c.place.desc())
+    .limit(bindparam("most"))
+)
 _NEWEST_ENDED = text(
     "select t.* from unnest(cast(:robots as text[])) of (robot) cross join lateral "
     "(select * from queue_tasks where robot = of.robot and state || '' = any(:ended) "
@@ -162,9 +168,7 @@ def _queue(row: Any, tasks: Mapping[str, Sequence[QueuedTask]]) -> Queue:
 
 def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedTask]:
     """Return the tasks of a robot that ended, newest first."""
-    c = queue_tasks.c
-    query = select(queue_tasks).where(c.robot == robot, beside_the_time(c.state).in_(_ENDED))
-    return _tasks(connection, query.order_by(c.ended_at.desc(), c.place.desc()).limit(limit))
+    return _tasks(connection, _NEWEST_ENDED_OF_ONE, {"of": robot, "most": limit})
 
 
 def newest_ended_of(connection: Connection, robots: Sequence[str], limit: int) -> dict[str, list[QueuedTask]]:
@@ -335,8 +339,10 @@ def _row(task: QueuedTask) -> dict[str, Any]:
     }
 
 
-def _tasks(connection: Connection, query: Select[Any]) -> list[QueuedTask]:
-    return list(readable(connection.execute(query).mappings(), _task, _name_of_task))
+def _tasks(
+    connection: Connection, query: Select[Any], values: Mapping[str, Any] | None = None
+) -> list[QueuedTask]:
+    return list(readable(connection.execute(query, values).mappings(), _task, _name_of_task))
 
 
 def _name_of_task(row: Any) -> str:
