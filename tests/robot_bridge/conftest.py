@@ -46,11 +46,20 @@ def sample_site(root) -> Path:
 @pytest.fixture(scope="module")
 def impatient_site(sample_site, tmp_path_factory) -> Path:
     """The same site, on which a robot is stale after 0.8 s and lost after 1.6 s."""
-    folder = tmp_path_factory.mktemp("impatient")
-    shutil.copy(sample_site / "site.gpkg", folder)
-    text = (sample_site / "site.toml").read_text(encoding="utf-8")
-    text = text.replace("stale_after_s = 3.0", "stale_after_s = 0.8")
-    text = text.replace("lost_after_s = 10.0", "lost_after_s = 1.6")
+    return _patient_for(sample_site, tmp_path_factory.mktemp("impatient"), 0.8, 1.6)
+
+
+@pytest.fixture(scope="module")
+def giving_up_site(sample_site, tmp_path_factory) -> Path:
+    """The same site, on which a robot is lost after 4 s in place of 10, soon after it is stale."""
+    return _patient_for(sample_site, tmp_path_factory.mktemp("giving-up"), 3.0, 4.0)
+
+
+def _patient_for(site: Path, folder: Path, stale: float, lost: float) -> Path:
+    shutil.copy(site / "site.gpkg", folder)
+    text = (site / "site.toml").read_text(encoding="utf-8")
+    text = text.replace("stale_after_s = 3.0", f"stale_after_s = {stale}")
+    text = text.replace("lost_after_s = 10.0", f"lost_after_s = {lost}")
     (folder / "site.toml").write_text(text, encoding="utf-8")
     return folder
 
@@ -106,6 +115,21 @@ def start_bridge(tmp_path_factory, new_database):
         for bridge in bridges:
             bridge.hang_up()
             assert "Traceback" not in bridge.output(), bridge.output()
+
+
+@pytest.fixture(autouse=True)
+def _nothing_goes_on(request):
+    """End what a test has started for itself alone, before the next one begins."""
+    if "start_bridge" not in request.fixturenames:
+        yield
+        return
+    from tests.support.bridge.bridge_programs import Bridge
+
+    for bridge in Bridge.open_ones:
+        bridge.begin_test()
+    yield
+    for bridge in list(Bridge.open_ones):
+        bridge.end_test()
 
 
 @pytest.fixture(scope="session")

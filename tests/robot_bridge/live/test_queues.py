@@ -114,7 +114,8 @@ def _state(operator):
     return next(iter(operator.desk.commands.values()))["state"]
 
 
-def test_others_take_over_what_a_killed_robot_has_left(bridge):
+def test_others_take_over_what_a_killed_robot_has_left(start_bridge, giving_up_site):
+    bridge = start_bridge(giving_up_site)
     killed = bridge.start_robot("r1", (20.0, 20.0, 0.0))
     bridge.start_robot("r2", (20.0, 30.0, 0.0))
     bridge.start_robot("r3", (20.0, 40.0, 0.0), sql=True)

@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from subprocess import Popen
-from typing import Any
+from typing import Any, ClassVar
+from weakref import WeakSet
 
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.fleet import serve
@@ -37,6 +38,8 @@ def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = 
 class Bridge:
     """One gateway on one site and one database, its robots, and who talks to it."""
 
+    open_ones: ClassVar[WeakSet[Bridge]] = WeakSet()
+
     def __init__(self, processes: Processes, site: Path, database: str):
         self.site, self.database = site, database
         self.address, self.port = "", 0
@@ -44,7 +47,10 @@ class Bridge:
         """More options of the gateway's command line."""
         self._processes = processes
         self._names: list[str] = []
+        self._running: list[str] = []
         self._wires: list[Wire] = []
+        self._had: tuple[set[str], set[Wire]] | None = None
+        self.open_ones.add(self)
 
     @property
     def file(self) -> Path:
@@ -53,7 +59,7 @@ class Bridge:
 
     def start_gateway(self) -> None:
         """Start the gateway, on the port it had if it ran before; return once it listens."""
-        name = self._unique("gateway")
+        self._gateway_name = name = self._unique("gateway")
         where = self._processes, self.site, self.database
         served = serve(*where, *self.options, port=self.port, name=name, forked=True)
         self.gateway = self.process = served.process
@@ -92,6 +98,7 @@ class Bridge:
 
     def _unique(self, name: str) -> str:
         self._names.append(f"{name}-{next(RUNS)}")
+        self._running.append(self._names[-1])
         return self._names[-1]
 
     def kill_gateway(self) -> None:
@@ -119,13 +126,37 @@ class Bridge:
     def end(self) -> None:
         """End the gateway and the robots, so that they take no time from the next test."""
         self.hang_up()
-        for name in reversed(self._names):
+        while self._running:
+            self._processes.end(self._running.pop())
+
+    def begin_test(self) -> None:
+        """Remember what runs and who is connected: that was there before a test."""
+        self._had = set(self._running), set(self._wires)
+
+    def end_test(self) -> None:
+        """End what a test has started on its own: robots that drive and desks that nobody reads cost time.
+
+        A gateway that was there before goes on, also where the test has started it again.
+        """
+        if self._had is None:
+            self.end()
+            return
+        had, connected = self._had
+        for name in [name for name in self._running if name not in had and not name.startswith("gateway-")]:
+            self._running.remove(name)
             self._processes.end(name)
+        for wire in [wire for wire in self._wires if wire not in connected]:
+            self._wires.remove(wire)
+            wire.hang_up()
 
     def sql(self, text: str, *values: Any) -> list[tuple[Any, ...]]:
         """Run one statement as any other program would."""
         with contextlib.closing(DatabaseClient(self.database)) as client:
             return client.sql(text, *values)
+
+    def gateway_output(self) -> str:
+        """Return what the gateway has printed since it was started last."""
+        return self._processes.log(self._gateway_name).read_text(encoding="utf-8")
 
     def output(self) -> str:
         """Return what the gateway and the robots have printed."""

@@ -50,3 +50,23 @@ def desk_at(bridge: Bridge, **options: Any) -> Desk:
     desk = bridge.desk(**options)
     desk.ask("subscribe", {"rate": 20})
     return desk
+
+
+def clear(desk: Desk, *elsewhere: Bridge) -> None:
+    """Clear the stop at the gateway of a desk; wait until others have learnt of that."""
+    stop = desk.ask("clear_emergency_stop", {"reason": "seen"})
+    assert not stop["in_force"]
+    for bridge in elsewhere:
+        other = desk_at(bridge)
+        other.until(lambda other=other: not other.emergency["in_force"])
+
+
+def stop(desk: Desk, number: object) -> Any:
+    """Begin an emergency stop; return its report."""
+    return desk.ask("emergency_stop", {"command": f"stop-{number}", "reason": "a test"})
+
+
+def told_gateways(bridge: Bridge, name: str) -> Any:
+    """Connect as a robot; return the gateways that it is told of."""
+    with bridge.robot(name) as robot:
+        return robot.wait_for("Start")["params"].get("gateways", [])

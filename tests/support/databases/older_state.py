@@ -27,9 +27,9 @@ def abort_there(desk: Desk, robot: str) -> None:
 
     # Its task is in no other database.
     desk.until(lambda: speed() < 0.02, 20)
-    desk.send("target-there", robot, "SetPosEnd", x=180.0, y=23.0)
+    desk.send(f"target-there-{robot}", robot, "SetPosEnd", x=180.0, y=23.0)
     desk.until(lambda: speed() > 0.1, 20)
-    desk.send("abort-there", robot, "Abort")
+    desk.send(f"abort-there-{robot}", robot, "Abort")
     desk.until(lambda: speed() < 0.02)
 
 

@@ -19,10 +19,10 @@ NUMBERS = itertools.count(1)
 
 
 @pytest.fixture(scope="module")
-def trio(start_bridge, sample_site, fleet_url, nats, tmp_path_factory):
+def trio(start_bridge, giving_up_site, fleet_url, nats, tmp_path_factory):
     """Three gateways, of which a began first: it carries on what plans do by themselves."""
     folder = tmp_path_factory.mktemp("state")
-    return GatewayPair(start_bridge, sample_site, fleet_url, folder, "--bus", nats.url, three=True)
+    return GatewayPair(start_bridge, giving_up_site, fleet_url, folder, "--bus", nats.url, three=True)
 
 
 @pytest.fixture
