@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from robot_bridge.core.messages.robots import Abort, OpAck, SetMap
-from robot_bridge.gateway.fleet import emergency_persistence, outbox
+from robot_bridge.gateway.fleet import emergency_persistence, robot_outboxes
 from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 from robot_bridge.gateway.storage.database import Database, run_once
 from robot_bridge.gateway.storage.repositories import requests
@@ -112,10 +112,10 @@ def hesitating(yard):
 def answer_at_once(connection):
     """Deal with the other robot's requests, and stop everybody, as the gateway does; fail where it waits."""
     connection.exec_driver_sql(AT_ONCE["mariadb" if connection.dialect.name == "mariadb" else "postgresql"])
-    rows, _ = outbox.read_requests(connection, [])
+    rows, _ = robot_outboxes.read_requests(connection, [])
     done = [RequestOutcome(row.robot, OpAck(id=row.id), SetMap(b"")) for row in rows if row.robot == OTHER]
     told = [message for outcome in done for message in outcome.rows(acks=True)]
-    outbox.finish_requests(connection, done, told, [row.id for row in rows if row.robot == OTHER], [])
+    robot_outboxes.finish_requests(connection, done, told, [row.id for row in rows if row.robot == OTHER], [])
     answers.remove_everywhere(connection, ["SetPath"])
 
 
