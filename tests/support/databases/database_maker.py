@@ -101,6 +101,11 @@ class DatabaseMaker:
         self._made += 1
         return self._copied_file() if kind == "sqlite" else self._copied()
 
+    def at(self, file: Path) -> str:
+        """Make a database of SQLite in a file; return its URL."""
+        shutil.copy(self("sqlite").removeprefix("sqlite:///"), file)
+        return f"sqlite:///{file}"
+
     def _first(self, kind: str) -> str:
         url = f"sqlite:///{self._folder}/model.db" if kind == "sqlite" else self._server(kind).new_database()
         run_once(url, revisions.create)

@@ -11,7 +11,6 @@ import pytest
 
 from robot_bridge.core.clock import SYSTEM_CLOCK
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import DAY, Fix, pack
@@ -57,9 +56,8 @@ def turned_site(sample_site, tmp_path):
 
 
 @pytest.fixture
-def url(tmp_path):
-    url = f"sqlite:///{tmp_path}/fleet.db"
-    run_once(url, revisions.create)
+def url(tmp_path, new_database):
+    url = new_database.at(tmp_path / "fleet.db")
     run_once(url, trajectories.add, list(map(pack, STORED)))
     return url
 

@@ -39,8 +39,8 @@ def turned_site(sample_site, tmp_path):
 
 
 @pytest.fixture
-async def database(tmp_path):
-    opened = Database(database_address(f"sqlite:///{tmp_path}/fleet.db", None))
+async def database(tmp_path, new_database):
+    opened = Database(database_address(new_database.at(tmp_path / "fleet.db"), None))
     await opened.open()
     yield opened
     await opened.close()

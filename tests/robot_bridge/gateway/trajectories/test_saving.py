@@ -26,8 +26,8 @@ EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=
 
 
 @pytest.fixture
-async def database(tmp_path):
-    database = Database(f"sqlite:///{tmp_path}/fleet.db")
+async def database(new_database):
+    database = Database(new_database("sqlite"))
     await database.open()
     yield database
     await database.close()

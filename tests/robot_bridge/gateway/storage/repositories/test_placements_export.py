@@ -38,9 +38,9 @@ def cone(n, layout="slalom", robot="r1", plan=None):
 
 
 @pytest.fixture
-async def where(sample_site, tmp_path):
+async def where(sample_site, tmp_path, new_database):
     """The options for a database with three cones of a slalom, one of them collected, and one of a circle."""
-    database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
+    database = Database(read_address(new_database.at(tmp_path / "fleet.db")))
     await database.open()
     for n in range(3):
         await database.run(records.add_placed_cones, cone(n))
