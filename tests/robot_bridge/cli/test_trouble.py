@@ -14,7 +14,6 @@ import urllib.request
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.backup import back_up
 from robot_bridge.gateway.storage.database import read_address, run_once
 from robot_bridge.gateway.storage.roles.choice import role_manager_on
@@ -88,9 +87,10 @@ def test_accounts_that_cannot_be_read_are_told_of_once(bridge):
 
 
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
-def test_a_gateway_that_another_replaced_ends_with_a_clear_word(kind, request, start_bridge, sample_site):
-    server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
-    run_once(read_address(url), revisions.create)
+def test_a_gateway_that_another_replaced_ends_with_a_clear_word(
+    kind, request, new_database, start_bridge, sample_site
+):
+    server, url = request.getfixturevalue(f"{kind}_server"), new_database.another(kind)
     bridge = start_bridge(sample_site, url)
     name = url.rsplit("/", 1)[1]
     other = json.dumps({"run": "other", "host": "elsewhere", "process": 7, "since": 0})
@@ -112,10 +112,9 @@ def test_a_gateway_that_another_replaced_ends_with_a_clear_word(kind, request, s
 
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logged(
-    kind, request, start_bridge, sample_site, tmp_path
+    kind, request, new_database, start_bridge, sample_site, tmp_path
 ):
-    server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
-    run_once(read_address(url), revisions.create)
+    server, url = request.getfixturevalue(f"{kind}_server"), new_database.another(kind)
     name, password = f"gw{secrets.token_hex(4)}", f"pass-{secrets.token_hex(12)}"
     run_once(read_address(server.admin_url(url)), lambda c: role_manager_on(c).add_gateway(name, password))
     own = server.url(url.rsplit("/", 1)[1], name, password)

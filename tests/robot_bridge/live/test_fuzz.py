@@ -21,14 +21,11 @@ SAID, WAITING, BESIDE = 50, 25, 15
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql", "mariadb"])
-def siege(request, limited_site, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("siege")
-    url, admin = f"sqlite:///{folder}/fleet.db", None
+def siege(request, limited_site, new_database, tmp_path_factory):
+    url, admin = new_database.another(request.param), None
     if request.param != "sqlite":
-        server = request.getfixturevalue(f"{request.param}_server")
-        url = server.new_database()
-        admin = server.admin_url(url)
-    with Processes(folder / "logs") as processes:
+        admin = request.getfixturevalue(f"{request.param}_server").admin_url(url)
+    with Processes(tmp_path_factory.mktemp("siege") / "logs") as processes:
         siege = Siege(processes, limited_site(GENEROUS), url, admin)
         yield siege
         siege.close()
