@@ -32,6 +32,7 @@ from pathlib import Path
 from typing import IO, Any
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+CLONE_NEWNET = 0x40000000
 LARGEST_ORDER = 1 << 20
 _libc = ctypes.CDLL(None, use_errno=True)
 
@@ -65,8 +66,6 @@ BRIDGE = Program(
         "pymysql",
         "pyogrio",
         "pyproj",
-        "robot_bridge.links.rosbridge.adapter",
-        "robot_bridge.links.vda5050.adapter",
         "scipy.sparse.csgraph",
         "shapely",
         "sqlalchemy.dialects.mysql.pymysql",
@@ -79,6 +78,24 @@ BRIDGE = Program(
         "zstandard",
     )
 )
+
+LINK_MODULES = {
+    "replay": ("robot_bridge.links.replay.adapter",),
+    # A link loads a binding of DDS and definitions of messages only when it begins to run.
+    "ros2": (
+        "robot_bridge.links.ros2.adapter",
+        "cyclonedds.builtin",
+        "cyclonedds.domain",
+        "cyclonedds.pub",
+        "cyclonedds.sub",
+        "cyclonedds.topic",
+        "rosbags.typesys.stores.ros2_kilted",
+    ),
+    "rosbridge": ("robot_bridge.links.rosbridge.adapter",),
+    "tracker": ("robot_bridge.links.tracker.adapter",),
+    "vda5050": ("robot_bridge.links.vda5050.adapter",),
+}
+"""More modules of ``BRIDGE`` that only links need, by their kinds."""
 
 
 class ForkedProcess(subprocess.Popen[bytes]):
@@ -137,11 +154,19 @@ def _adopting() -> Iterator[None]:
 
 
 def start_forked(
-    program: Program, words: Sequence[Any], log: IO[bytes], env: Mapping[str, str]
+    program: Program,
+    words: Sequence[Any],
+    log: IO[bytes],
+    env: Mapping[str, str],
+    *,
+    modules: Sequence[str] = (),
+    network: Path | None = None,
 ) -> ForkedProcess:
     """Start a program with ``words`` and ``env`` added to the environment.
 
-    It prints into ``log``, and is killed when this process ends.
+    It prints into ``log``, and is killed when this process ends. ``modules`` are more of its modules, which
+    only some of its runs need: they are loaded when the first of those is started. ``network`` is the file
+    of a namespace of networks, where it is to run in another than this process.
     """
     forking = _forking(program)
     command = [str(word) for word in words]
@@ -150,6 +175,8 @@ def start_forked(
         "env": {**os.environ, **env},
         "folder": str(Path.cwd()),
         "parent": os.getpid(),
+        "modules": modules,
+        "network": str(network or ""),
     }
     with forking.lock, _adopting():
         socket.send_fds(forking.orders, [json.dumps(order).encode()], [log.fileno()])
@@ -179,10 +206,7 @@ def write_shell_command(file: Path, program: Program = BRIDGE) -> None:
 
 def _serve(orders: socket.socket, shells: socket.socket, modules: Sequence[str]) -> None:
     """Fork a program for each order; return in the forked one, and end with the other side of ``orders``."""
-    for name in modules:
-        importlib.import_module(name)
-    gc.collect()
-    gc.freeze()
+    _load(modules)
     asking, text, files = _await_order(orders, shells)
     shells.close()
     order = json.loads(text)
@@ -201,6 +225,17 @@ def _serve(orders: socket.socket, shells: socket.socket, modules: Sequence[str])
     _connect_to(files)
 
 
+def _load(modules: Sequence[str]) -> None:
+    """Load modules that are forked with this process; what cannot be loaded the program says by itself."""
+    new = [name for name in modules if name not in sys.modules]
+    for name in new:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    if new:
+        gc.collect()
+        gc.freeze()
+
+
 def _await_order(orders: socket.socket, shells: socket.socket) -> tuple[socket.socket, bytes, list[int]]:
     """Fork for each order, and return it in the forked process: who asks, the order and its files."""
     while True:
@@ -209,6 +244,7 @@ def _await_order(orders: socket.socket, shells: socket.socket) -> tuple[socket.s
         text, files, _, _ = socket.recv_fds(asking, LARGEST_ORDER, 3)
         if not text and asking is orders:
             sys.exit()
+        _load(json.loads(text).get("modules", ()))
         between = os.fork()
         if not between:
             return asking, text, files
@@ -240,6 +276,10 @@ def _become(order: dict[str, Any], module: str, parent: int) -> None:
         time.sleep(0.0005)
     _libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     os.chdir(order["folder"])
+    if network := order.get("network"):
+        with open(network) as file:  # noqa: PTH123
+            if _libc.setns(file.fileno(), CLONE_NEWNET):
+                raise OSError(ctypes.get_errno(), f"{network} cannot be entered")
     # A Python may have set for itself where its libraries are.
     libraries = {name: os.environ[name] for name in ("LD_LIBRARY_PATH",) if name in os.environ}
     os.environ.clear()

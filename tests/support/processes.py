@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 from weakref import WeakSet
 
 from tests.support.errors import StageError
-from tests.support.forked_programs import BRIDGE, Program, start_forked
+from tests.support.forked_programs import BRIDGE, LINK_MODULES, Program, start_forked
 
 PATIENCE_S = 5.0
 """How long a process may take to end after SIGTERM before it is killed."""
@@ -77,14 +77,27 @@ class Processes:
         self, name: str, words: Sequence[Any], *, env: Mapping[str, str] | None = None
     ) -> subprocess.Popen[bytes]:
         """Start ``robot-bridge`` with ``words``, as :meth:`start` does, and without loading its modules."""
-        return self.start_forked(BRIDGE, name, words, env=env)
+        link, kind = [*map(str, words), "", ""][:2]
+        modules = LINK_MODULES.get(kind, ()) if link == "link" else ()
+        return self.start_forked(BRIDGE, name, words, env=env, modules=modules)
 
     def start_forked(
-        self, program: Program, name: str, words: Sequence[Any], *, env: Mapping[str, str] | None = None
+        self,
+        program: Program,
+        name: str,
+        words: Sequence[Any],
+        *,
+        env: Mapping[str, str] | None = None,
+        modules: Sequence[str] = (),
+        network: Path | None = None,
     ) -> subprocess.Popen[bytes]:
-        """Start a program with ``words``, as :meth:`start` does, and without loading its modules."""
+        """Start a program with ``words``, as :meth:`start` does, and without loading its ``modules``.
+
+        ``network`` is the file of a namespace of networks, where it is to run in one of its own.
+        """
+        said = {"PYTHONUNBUFFERED": "1", **(env or {})}
         with self.log(name).open("wb") as log:
-            process = start_forked(program, words, log, {"PYTHONUNBUFFERED": "1", **(env or {})})
+            process = start_forked(program, words, log, said, modules=modules, network=network)
         self._running[name] = process
         return process
 

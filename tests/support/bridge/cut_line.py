@@ -91,7 +91,8 @@ class CutLine:
 class CutNetwork:
     """A network for one robot, with a wire to this computer that can be pulled out; takes root.
 
-    ``through`` begins the commands that run there, ``interface`` is this computer's end of the wire.
+    ``namespace`` is the file by which programs enter it, ``through`` begins the commands that run there, and
+    ``interface`` is this computer's end of the wire.
     """
 
     _numbers = itertools.count()
@@ -101,7 +102,8 @@ class CutNetwork:
         self.interface = f"fleet{number[0]}-{number[1]}"
         # A sleeping program holds the network until it is killed.
         self._holder = subprocess.Popen(["unshare", "--net", "sleep", "infinity"])
-        self.through = ["nsenter", "--net", f"--target={self._holder.pid}"]
+        self.namespace = Path(f"/proc/{self._holder.pid}/ns/net")
+        self.through = ["nsenter", f"--net={self.namespace}"]
         try:
             self._wire(f"10.99.{number[0]}")
         except BaseException:
@@ -117,7 +119,7 @@ class CutNetwork:
     def _wire(self, net: str) -> None:
         until = time.monotonic() + 10
         own = Path("/proc/self/ns/net").readlink()
-        while Path(f"/proc/{self._holder.pid}/ns/net").readlink() == own:
+        while self.namespace.readlink() == own:
             assert time.monotonic() < until, "it has no network of its own"
             time.sleep(0.01)
         far = f"{self.interface}r"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import socket
-from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -73,13 +72,13 @@ class Nodes:
         *options: str,
         domain: int | None = None,
         node: str | None = None,
-        through: Sequence[str] = (),
+        network: Path | None = None,
         short_lease: bool = False,
     ) -> None:
         """Start a robot, in the domain of this module or another; wait until it says that it is up.
 
-        ``node`` is the name of its topics, where several nodes are to have the same ones; ``through`` begins
-        the command, where it is to run on a network of its own. With a ``short_lease`` it counts as gone
+        ``node`` is the name of its topics, where several nodes are to have the same ones; ``network`` is the file
+        of a namespace of networks, where it is to run in one of its own. With a ``short_lease`` it counts as gone
         6 s after it was ended, else after 20 s.
         """
         number = self._started[name] = self._started.get(name, 0) + 1
@@ -87,11 +86,9 @@ class Nodes:
         environment, words = self.environment(domain), [node or name, *options]
         if short_lease:
             environment["FASTDDS_DEFAULT_PROFILES_FILE"] = str(SHORT_LEASE)
-        if through:
+        if network:
             environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
-            self._processes.start(log, [*through, self._python, ROBOT, *words], env=environment)
-        else:
-            self._processes.start_forked(self._robot, log, words, env=environment)
+        self._processes.start_forked(self._robot, log, words, env=environment, network=network)
         self._processes.wait_for_line(log, '"up"', START)
 
     def start_script(self, name: str, script: Path, *arguments: str) -> None:

@@ -49,7 +49,8 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_path": (FollowPath, lambda goal: goal.path.poses),
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
-TICK = 0.1
+TICK = 0.2
+"""seconds between looks at a goal: each costs a robot that drives, and all who listen to it."""
 GIVES_UP_AT = 22.0
 """metres."""
 LATE = 1.5
@@ -77,14 +78,16 @@ class Robot(Node):
         self.driving = threading.Lock()
         self.moved_at = time.monotonic()
         self.newest: object = None
+        self.battery_at = 0
+        """The second in which it said last how full its battery is."""
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         fast = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self.create_timer(TICK, self.drive)
+        self.is_led = "deaf-stop" in options.odd
         if "silent" not in options.odd:
             self.odom = self.create_publisher(Odometry, "odom", fast)
             self.battery = self.create_publisher(BatteryState, "battery_state", 10)
+            # One timer for all that comes again and again: each look at all timers, topics and servers is dear.
             self.create_timer(1.0 / options.rate, self.report)
-            self.create_timer(1.0, self.report_battery)
         self.create_subscription(OccupancyGrid, "map", self.map_came, latched)
         for name in ("keepout", "speed"):
             self.create_subscription(OccupancyGrid, f"{name}_mask", partial(self.mask_came, name), latched)
@@ -101,7 +104,6 @@ class Robot(Node):
         if "deaf-stop" not in options.odd:
             self.create_subscription(Twist, "cmd_vel", self.twist_came, 10)
             self.create_service(Trigger, "stop", self.stop_called)
-            self.led = self.create_timer(0.1, self.find_leader)
         self.create_service(Trigger, "place_cone", self.cone_called)
         if options.asks_map:
             self.map_client = self.create_client(GetMap, "get_map")
@@ -136,6 +138,7 @@ class Robot(Node):
     def execute(self, kind: Any, goal: Any, poses: Any):
         """Drive a goal to its end, as Nav2 does: a newer one takes its place."""
         self.newest = goal
+        self.drive()  # what it drove until now is no part of this
         self.braked = False
         self.points = [(pose.pose.position.x, pose.pose.position.y) for pose in poses]
         say("goal", kind=kind.__name__, id=bytes(goal.goal_id.uuid).hex(), points=self.points)
@@ -162,6 +165,7 @@ class Robot(Node):
                 break
             goal.publish_feedback(self.feedback(kind))
             time.sleep(TICK)
+            self.drive()
         say("goal ended", id=bytes(goal.goal_id.uuid).hex(), status=int(goal.status))
         return result
 
@@ -177,9 +181,9 @@ class Robot(Node):
 
     def drive(self):
         """Go on for as long as has passed, which is more than a tick on a busy machine."""
-        now = time.monotonic()
-        left, self.moved_at = self.options.speed * (now - self.moved_at), now
         with self.driving:
+            now = time.monotonic()
+            left, self.moved_at = self.options.speed * (now - self.moved_at), now
             points = ahead = [] if self.braked else self.points
             self.v = self.options.speed if points else 0.0
             while ahead and left > 0:
@@ -196,7 +200,9 @@ class Robot(Node):
                 self.points = ahead
 
     def report(self):
-        """Say where it is."""
+        """Say where it is, and how full its battery is."""
+        self.drive()
+        self.find_leader()
         told = Odometry()
         told.header.frame_id = "elsewhere" if "other-frame" in self.options.odd else "map"
         told.child_frame_id = "base_link"
@@ -211,12 +217,9 @@ class Robot(Node):
         )
         told.twist.twist.linear.x = self.v
         self.odom.publish(told)
-
-    def report_battery(self):
-        """Say how full its battery is."""
-        told = BatteryState()
-        told.percentage = 0.75
-        self.battery.publish(told)
+        if told.header.stamp.sec != self.battery_at:
+            self.battery_at = told.header.stamp.sec
+            self.battery.publish(BatteryState(percentage=0.75))
 
     def report_image(self):
         """Say what it sees: two red pixels and a blue one, or bytes that begin as a JPEG does."""
@@ -258,15 +261,16 @@ class Robot(Node):
 
     def goal_came(self, pose: Any):
         """Drive to a target that came on a topic."""
+        self.drive()
         self.braked = False
         self.points = [(pose.pose.position.x, pose.pose.position.y)]
         say("goal pose", points=self.points)
 
     def find_leader(self):
         """Say once that somebody may tell it its speed: what is said before that it does not hear."""
-        if self.count_publishers("cmd_vel"):
+        if not self.is_led and self.count_publishers("cmd_vel"):
             say("led")
-            self.led.cancel()
+            self.is_led = True
 
     def twist_came(self, twist: Any):
         """Stand when told so."""

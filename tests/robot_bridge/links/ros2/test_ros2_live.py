@@ -424,7 +424,7 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nod
         ros2_link(processes, file).start()
         try:
             for name in (driving, stopped, ordered):
-                nodes.start(name, *SLOW, domain=domain, through=network.through)
+                nodes.start(name, *SLOW, domain=domain, network=network.namespace)
             desk.wait_for_robots(driving, stopped, ordered, seconds=BUSY * 10)
             outlast_a_cut(desk, nodes, network.cut, network.mend, driving, stopped, ordered)
         finally:
