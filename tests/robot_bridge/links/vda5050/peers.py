@@ -6,7 +6,6 @@ import itertools
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +14,12 @@ import pytest
 
 from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
+from tests.support.forked_programs import Program
 from tests.support.patience import BUSY, START
 from tests.support.processes import Processes, free_port
 
 VEHICLE = Path(__file__).with_name("virtual_vehicle.js")
-SDK_VEHICLE = Path(__file__).with_name("sdk_vehicle.py")
-VEHICLE_3_0 = Path(__file__).with_name("vehicle_3_0.py")
+SDK_VEHICLE, VEHICLE_3_0 = (Program((name,), path=VEHICLE.parent) for name in ("sdk_vehicle", "vehicle_3_0"))
 RUNS = itertools.count(1)
 
 
@@ -108,9 +107,12 @@ class Yard:
         for name in reversed(self.names.values()):
             self._processes.end(name)
 
-    def _start_python(self, program: Path, serial: str, x: float, y: float, options: dict[str, Any]) -> None:
+    def _start_python(
+        self, program: Program, serial: str, x: float, y: float, options: dict[str, Any]
+    ) -> None:
         given = {"port": self.port, "serial": serial, "x": x, "y": y, **options}
-        self._start(serial, [sys.executable, program, json.dumps(given)])
+        unique = self._unique(serial)
+        self.running[serial] = self._processes.start_forked(program, unique, [json.dumps(given)])
         self._processes.wait_for_line(self.names[serial], "vehicle is there", START)
 
     def _start(self, name: str, command: list[Any], **environment: str) -> None:

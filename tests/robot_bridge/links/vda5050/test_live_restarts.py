@@ -209,7 +209,8 @@ def test_settings_that_changed_on_the_way_stop_a_vehicle_and_its_command_has_fai
         yard.start_adapter(bridge.address, *after, name="changed")
         # By the settings of now that place is another one, or another vehicle's.
         desk.wait_for_step(command, "failed")
-        assert wait_for_standing(desk, drives) < 70.0
-        desk.wait_for_step(send(desk, drives, x=74.0, y=10.0), "reached")
+        place = wait_for_standing(desk, drives)
+        assert place < 70.0
+        desk.wait_for_step(send(desk, drives, x=place + 2.0, y=10.0), "reached")
         desk.hang_up()
         yard.end()

@@ -50,7 +50,7 @@ def test_a_cut_of_ten_seconds_loses_nothing_and_does_nothing_twice(cut_yard, des
     """One vehicle is on its way, another is sent off meanwhile: that is refused, and stays so."""
     yard, line = cut_yard
     driving, standing = (begin(yard, desk, y=y, speed=SLOW) for y in (8.0, 12.0))
-    command = send(desk, driving, x=60.0, y=8.0)
+    command = send(desk, driving, x=50.0, y=8.0)
     wait_under_way(desk, driving)
     line.cut()
     until = time.monotonic() + CUT_S
@@ -66,5 +66,5 @@ def test_a_cut_of_ten_seconds_loses_nothing_and_does_nothing_twice(cut_yard, des
     # The order may come out of the line yet: what takes it back comes right behind it.
     assert wait_for_standing(desk, standing) < 21.0
     assert desk.commands[refused]["state"] == "failed"
-    again = send(desk, standing, x=30.0, y=12.0)
+    again = send(desk, standing, x=24.0, y=12.0)
     desk.wait_for_step(again, "reached", 60)

@@ -26,8 +26,8 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 
 TICK, BRAKES = 0.05, 8.0
 """s, and m/s²."""
-STATE_EVERY = 0.3
-"""s."""
+SEEN_EVERY, STATE_EVERY = 0.2, 0.3
+"""s; between messages of where it is, and of all."""
 ACTIONS = (
     "cancelOrder",
     "startPause",
@@ -196,7 +196,7 @@ class Vehicle:
         self.is_cancelled = self.paused = False
         self.instant: dict[str, dict[str, Any]] = {}
         self.errors: list[dict[str, Any]] = []
-        self.due = 0.0
+        self.due = self.seen_due = 0.0
         self.client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2)
         self.client.on_message = lambda _client, _data, message: self.inbox.put(
             (message.topic.split("/")[-1], message.payload)
@@ -219,7 +219,9 @@ class Vehicle:
                 self.receive(*self.inbox.get())
                 self.due = 0.0
             self.drive()
-            self.publish("visualization", referenceStateHeaderId=self.numbers["state"], **self.place())
+            if time.monotonic() >= self.seen_due:
+                self.seen_due = time.monotonic() + SEEN_EVERY
+                self.publish("visualization", referenceStateHeaderId=self.numbers["state"], **self.place())
             if time.monotonic() >= self.due:
                 self.due = time.monotonic() + STATE_EVERY
                 self.publish("state", **self.state())
@@ -398,4 +400,10 @@ class Vehicle:
         self.due = 0.0
 
 
-Vehicle(json.loads(sys.argv[1])).run()
+def main() -> None:
+    """Run one vehicle until the program is ended."""
+    Vehicle(json.loads(sys.argv[1])).run()
+
+
+if __name__ == "__main__":
+    main()

@@ -16,7 +16,7 @@ const vehicle = new AgvController(
             password: given.password,
         },
     },
-    { agvAdapterType: VirtualAgvAdapter, publishStateInterval: 500, publishVisualizationInterval: 100 },
+    { agvAdapterType: VirtualAgvAdapter, publishStateInterval: 500, publishVisualizationInterval: 250 },
     {
         vehicleSpeed: given.speed ?? 8,
         tickRate: 20,
