@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +17,8 @@ from tools.plugin_files import ROOT
 
 SOURCES = ROOT / "build" / "site-sources"
 PARTS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "docs")
+API = ROOT / "docs" / "api.md"
+API_SOURCES = ROOT / "build" / "api-sources"
 
 
 def lay_out(folder: Path = SOURCES) -> None:
@@ -26,11 +30,27 @@ def lay_out(folder: Path = SOURCES) -> None:
         link.symlink_to(ROOT / name)
 
 
+def lay_out_api(folder: Path = API_SOURCES) -> None:
+    """Show in ``folder`` those packages of the gateway that the page of the API is about.
+
+    What is shown is read whole, and most of the gateway is no part of its API.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    named = re.findall(r"^::: (\w+)\.(\w+)", API.read_text(encoding="utf-8"), re.MULTILINE)
+    for package, part in sorted(set(named)):
+        (folder / package).mkdir(parents=True, exist_ok=True)
+        for source in (ROOT / package / "__init__.py", ROOT / package / part):
+            link = folder / package / source.name
+            if not link.exists():
+                link.symlink_to(source)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--output", type=Path, default=ROOT / "build" / "site")
     output = parser.parse_args().output.resolve()
     lay_out()
+    lay_out_api()
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", output]
     # The theme's makers advertise on each run otherwise.
     done = subprocess.run(command, cwd=ROOT, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"}, check=False)
