@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from osgeo import gdal
 
+from tests.support.qgis import add_compiled
+
 ROOT = Path(__file__).resolve().parents[2]
 SCREEN, A4 = [800, 1280], [620, 877]
 """Pixels of pictures."""
@@ -29,10 +31,11 @@ def release(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def unpacked(release, tmp_path_factory) -> Path:
-    """A plugins folder that holds what is in the zip and nothing else."""
+    """A plugins folder that holds what is in the zip, and what Python has compiled of that already."""
     folder = tmp_path_factory.mktemp("plugins")
     with zipfile.ZipFile(release) as archive:
         archive.extractall(folder)
+    add_compiled(folder / "fleet_supervisor")
     return folder
 
 

@@ -68,7 +68,7 @@ class Profile:
         (folder / "run").mkdir(mode=0o700)
         self.plugin = install(profile, link=link)
         if not link:
-            _take_compiled(self.plugin)
+            add_compiled(self.plugin)
 
     def environment(self, *, packages: bool) -> dict[str, str]:
         """Return what QGIS's environment needs; with ``packages`` it also sees those of this environment."""
@@ -84,12 +84,12 @@ class Profile:
         }
 
 
-def _take_compiled(plugin: Path) -> None:
+def add_compiled(plugin: Path) -> None:
     """Put what Python has compiled of the repository beside the copy, so that QGIS need not."""
     for copy in plugin.rglob("*.py"):
         source = ROOT / copy.relative_to(plugin)
         compiled = Path(cache_from_source(str(source)))
-        if compiled.is_file():
+        if compiled.is_file() and copy.read_bytes() == source.read_bytes():
             # Compiled is what is as old as its source.
             os.utime(copy, ns=(source.stat().st_atime_ns, source.stat().st_mtime_ns))
             target = Path(cache_from_source(str(copy)))
