@@ -77,9 +77,9 @@ class Nodes:
     ) -> None:
         """Start a robot, in the domain of this module or another; wait until it says that it is up.
 
-        ``node`` is the name of its topics, where several nodes are to have the same ones; ``network`` is the file
-        of a namespace of networks, where it is to run in one of its own. With a ``short_lease`` it counts as gone
-        6 s after it was ended, else after 20 s.
+        ``node`` is the name of its topics, where several nodes are to have the same ones; ``network`` is the
+        file of a namespace of networks, where it is to run in one of its own. With a ``short_lease`` it
+        counts as gone 6 s after it was ended, else after 20 s.
         """
         number = self._started[name] = self._started.get(name, 0) + 1
         log = f"{name}-{number}"

@@ -86,7 +86,7 @@ class Robot(Node):
         if "silent" not in options.odd:
             self.odom = self.create_publisher(Odometry, "odom", fast)
             self.battery = self.create_publisher(BatteryState, "battery_state", 10)
-            # One timer for all that comes again and again: each look at all timers, topics and servers is dear.
+            # One timer for all that comes again: a look at all timers, topics and servers is dear.
             self.create_timer(1.0 / options.rate, self.report)
         self.create_subscription(OccupancyGrid, "map", self.map_came, latched)
         for name in ("keepout", "speed"):
