@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import threading
 from collections.abc import Iterator
 
@@ -16,10 +17,18 @@ THAWS_AFTER = 20.0
 """Seconds on an idle machine: who waits for the server fails then, and does not wait for ever."""
 
 
+@functools.cache
+def _model(server: PostgreSql) -> str:
+    """Make a database with PostGIS, and return its name: a copy takes a tenth of the time."""
+    database = make_url(server.new_database()).database
+    assert database is not None
+    server.sql("create extension postgis", database)
+    return database
+
+
 def layer_in_database(server: PostgreSql, wkt: str, kind: str = "Polygon") -> str:
     """Make a database with a table of one feature in EPSG:32633; return what QGIS opens it by."""
-    url = make_url(server.new_database())
-    server.sql("create extension postgis", url.database)
+    url = make_url(server.copied_database(_model(server)))
     server.sql(
         f"create table bays (id serial primary key, name text, geom geometry({kind}, 32633));"
         f"insert into bays (name, geom) values ('Bay', ST_GeomFromText('{wkt}', 32633));"
