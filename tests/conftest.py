@@ -284,6 +284,7 @@ LONG = (
     "robot_bridge/gateway/storage/databases/test_stop_on_each.py",
     "robot_bridge/live/test_restarts.py",
     "robot_bridge/gateway/cluster/test_plans_across.py",
+    "robot_bridge/gateway/cluster/test_older_databases.py",
     "plugin/loop/test_cone_plan.py",
     "plugin/language/test_room_for_words.py",
     "packaging/test_walkthrough.py",

@@ -118,7 +118,7 @@ def start_bridge(tmp_path_factory, new_database):
 
 
 @pytest.fixture(autouse=True)
-def _nothing_goes_on(request):
+def _end_with_the_test(request):
     """End what a test has started for itself alone, before the next one begins."""
     if "start_bridge" not in request.fixturenames:
         yield

@@ -66,7 +66,7 @@ def stop(desk: Desk, number: object) -> Any:
     return desk.ask("emergency_stop", {"command": f"stop-{number}", "reason": "a test"})
 
 
-def told_gateways(bridge: Bridge, name: str) -> Any:
-    """Connect as a robot; return the gateways that it is told of."""
+def announced_gateways(bridge: Bridge, name: str) -> Any:
+    """Connect as a robot; return the gateways in its Start."""
     with bridge.robot(name) as robot:
         return robot.wait_for("Start")["params"].get("gateways", [])

@@ -10,7 +10,7 @@ from urllib.request import urlopen
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.gateway_pair import GatewayPair, clear, desk_at, stop, told_gateways
+from tests.support.bridge.gateway_pair import GatewayPair, announced_gateways, clear, desk_at, stop
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.older_state import OlderState, abort_there
 from tests.support.patience import BUSY
@@ -115,7 +115,7 @@ def test_two_gateways_need_no_further_server(pair, name):
     assert robot.wait_for("Abort")["params"]["emergency"]
     desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
     gateways = [f"{pair.b.address}/robot", f"{pair.a.address}/robot"]
-    wait_until(lambda: told_gateways(pair.b, f"{name}-probe") == gateways)
+    wait_until(lambda: announced_gateways(pair.b, f"{name}-probe") == gateways)
     here = pair.robot(pair.b, f"{name}-b")
     # The desk of the gateway that takes its leave goes on at the other: its robots are free at once.
     end_gateway(pair.a)

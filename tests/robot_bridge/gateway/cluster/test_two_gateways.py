@@ -12,7 +12,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.gateway_pair import GatewayPair, clear, desk_at, stop, told_gateways
+from tests.support.bridge.gateway_pair import GatewayPair, announced_gateways, clear, desk_at, stop
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
@@ -218,7 +218,7 @@ def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, 
     """They were given the address of one, and that says when another one comes."""
     both = [bridge.address for bridge in (pair.a, pair.b)]
     pair.b.end()
-    wait_until(lambda: told_gateways(pair.a, f"{name}-probe") == [f"{both[0]}/robot"])
+    wait_until(lambda: announced_gateways(pair.a, f"{name}-probe") == [f"{both[0]}/robot"])
     phones = tmp_path / f"{name}.toml"
     tracker = f'[tracker]\nhttp = "127.0.0.1:{free_port()}"\n[tracker.names]\n845213 = "phone"'
     phones.write_text(f'[gateway]\nurl = "{both[0]}/link"\n{tracker}\n', encoding="utf-8")
@@ -237,7 +237,7 @@ def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, 
     assert time.monotonic() - began < 4 * BUSY
     desk.until(lambda: phones.stem in str(desk.links))
     # The one that was killed may be back soon, and comes behind those that live.
-    assert told_gateways(pair.b, f"{name}-probe") == [f"{one}/robot" for one in both[::-1]]
+    assert announced_gateways(pair.b, f"{name}-probe") == [f"{one}/robot" for one in both[::-1]]
     for process in started:
         process.kill()
     # A stop is not said to have missed a gateway any longer than that may be there.
