@@ -360,7 +360,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             stamp = await asyncio.to_thread(stamp_of, folder)
             site = await asyncio.to_thread(_chosen, folder, site)
         await _check_frame(site, settings, database, cluster)
-        stops, aborts = await asyncio.to_thread(_journals, settings)
+        stops, aborts = await asyncio.to_thread(_journals, settings, await database.run(metadata.database_id))
         gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
         accounts = gate.accounts.has_operator(time.time())
@@ -520,8 +520,8 @@ async def _check_frame(
         )
 
 
-def _journals(settings: GatewaySettings) -> tuple[StopJournal | None, AbortJournal | None]:
-    """Return the journals of a gateway, of several on one database without that of Aborts.
+def _journals(settings: GatewaySettings, database: str) -> tuple[StopJournal | None, AbortJournal | None]:
+    """Return the journals of a gateway on the database with the id ``database``; of several without Aborts.
 
     Its robots go on at another one, which does not read it; long after, it would stop them for nothing.
     """
@@ -530,7 +530,7 @@ def _journals(settings: GatewaySettings) -> tuple[StopJournal | None, AbortJourn
     files = None if folder is None else journal_files(settings.database, folder, name)
     if files is None:
         return None, None
-    stops, aborts = StopJournal(files[0]), AbortJournal(files[1])
+    stops, aborts = StopJournal(files[0]), AbortJournal(files[1], database)
     stops.check()
     if settings.cluster is not None:
         return stops, None

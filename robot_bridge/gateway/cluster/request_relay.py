@@ -212,7 +212,7 @@ class RequestRelay:
         self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
     ) -> list[dict[str, Any]]:
         """Return the results of requests about robots of other gateways; raises as their handlers do."""
-        stops = [(robot, r) for robot, r in requests if _stops(r)]
+        stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
         relaying = asyncio.ensure_future(self._ask(requests, operator))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
         sent: list[str] = []
@@ -224,9 +224,9 @@ class RequestRelay:
             if not stops:
                 raise
             to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
-            raise StoreError(
-                f"{error}. The Abort is not stored; it was {to}: look whether they stand"
-            ) from error
+            pauses = isinstance(stops[0][1], PauseRobot)
+            what = "The pause is not stored; an Abort" if pauses else "The Abort is not stored; it"
+            raise StoreError(f"{error}. {what} was {to}: look whether they stand") from error
         return [_result_in(answer) for answer in answers]
 
     def _send_abort(self, robot: str, request: DeskRequest[Any]) -> bool:

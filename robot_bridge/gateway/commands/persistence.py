@@ -8,6 +8,7 @@ import dataclasses
 import logging
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Mapping, Sequence
+from concurrent.futures import Future
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
@@ -257,8 +258,8 @@ def _stored(command: ActiveCommand) -> StoredCommand:
 class AbortNotes(Protocol):
     """Aborts noted where a gateway that is killed does not lose them."""
 
-    def write(self, orders: Sequence[CommandOrder]) -> object:
-        """Write ``orders``, and no others, in the background."""
+    def write(self, orders: Sequence[CommandOrder]) -> Future[bool]:
+        """Write ``orders``, and no others, in the background; the result is whether that was done."""
 
     def read(self) -> list[CommandOrder]:
         """Return the Aborts that an earlier gateway left."""
@@ -275,29 +276,28 @@ class UnstoredAborts:
         self._orders: dict[str, dict[str | None, CommandOrder]] = {}
         self._notes = notes
         self._is_noted = True
+        self._writing: Future[bool] | None = None
 
-    def restore(self) -> None:
-        """Keep the Aborts that an earlier gateway left; reads a file."""
-        if self._notes is not None:
-            self._add(self._notes.read())
+    def read_notes(self) -> list[CommandOrder]:
+        """Return the Aborts that an earlier gateway left; reads a file."""
+        return [] if self._notes is None else self._notes.read()
 
-    def keep(self, orders: Iterable[CommandOrder]) -> None:
-        """Keep the Aborts among ``orders``."""
-        if self._add(orders):
-            self.write_notes()
+    def keep(self, orders: Iterable[CommandOrder]) -> Future[bool] | None:
+        """Keep the Aborts among ``orders``; return the writing of the notes, if there are any."""
+        for order in orders:
+            if isinstance(order.message, Abort):
+                self._orders.setdefault(order.robot, {})[order.aborts] = order
+                self._is_noted = False
+        self.write_notes()
+        return self._writing
 
     def write_notes(self) -> None:
-        """Have the notes say what is kept, unless they do."""
-        if self._notes is not None and not self._is_noted:
-            self._notes.write(self.of(self._orders))
+        """Have the notes say what is kept, unless they do; what could not be written is written again."""
+        writing = self._writing
+        has_failed = writing is not None and writing.done() and not writing.result()
+        if self._notes is not None and (has_failed or not self._is_noted):
+            self._writing = self._notes.write(self.of(self._orders))
         self._is_noted = True
-
-    def _add(self, orders: Iterable[CommandOrder]) -> bool:
-        aborts = [order for order in orders if isinstance(order.message, Abort)]
-        for order in aborts:
-            self._orders.setdefault(order.robot, {})[order.aborts] = order
-            self._is_noted = False
-        return bool(aborts)
 
     def of(self, robots: Iterable[str]) -> list[CommandOrder]:
         """Return the Aborts of ``robots``."""

@@ -6,12 +6,13 @@ import asyncio
 import logging
 import uuid
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
-from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
+from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError, check_crs, to_json
 from ...core.messages.commands import (
@@ -42,6 +43,8 @@ T = TypeVar("T")
 STORED_WITHIN = 1.0
 """seconds after which an Abort that is not stored yet is sent over open connections as well, and written
 alone for robots that read the database: its command needs tables that somebody may have locked."""
+NOTED_WITHIN = 0.5
+"""seconds that an answer waits for the note of what is not stored."""
 STORED_LATER = "it is stored and sent as soon as the database takes it"
 
 
@@ -121,30 +124,42 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-        return await self.send_if_unstored(
-            orders, start_task(self._commands.issue(orders)), "The Abort", "it"
-        )
+        return await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
 
     async def send_if_unstored(
-        self, orders: list[CommandOrder], storing: asyncio.Task[T], change: str, abort: str = "an Abort"
+        self, orders: list[CommandOrder], storing: asyncio.Task[T], *, is_pause: bool = False
     ) -> T:
-        """Return the result of ``storing``, of which Aborts are a part; see :data:`STORED_WITHIN`.
+        """Return the result of ``storing``: of Aborts, or with ``is_pause`` of the pause of a robot.
 
-        ``change`` and ``abort`` name in an error what is not stored, and what was sent.
+        An Abort is noted before it is sent, a pause becomes one when it has failed.
 
-        :raises StoreError: with the robots that it was sent to; else as ``storing``.
+        :raises StoreError: with the robots that an Abort was sent to; else as ``storing``.
         """
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):
+            noting = None if is_pause else self._commands.keep_aborts(orders)
             sent = [order.robot for order in orders if self._send_unstored(order)]
             sent += await self._write_unstored(orders, storing)
+            await _wait_for_note(noting)
         try:
-            return await storing
+            result = await storing
         except StoreError as error:
-            recipients = f"sent to {listed_names(sent)} all the same" if sent else "sent to no robot"
-            then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
-            raise StoreError(f"{error}. {change} is not stored; {abort} was {recipients}{then}") from error
+            is_refused = isinstance(error, DataRefusedError)
+            if is_pause and not is_refused:
+                await _wait_for_note(self._commands.keep_aborts(orders))
+            elif is_refused:
+                self._commands.release_aborts(orders)
+            what = _sent_in_words(sent, is_pause=is_pause, is_lasting=not is_refused)
+            kind = UncertainError if is_pause and isinstance(error, UncertainError) else StoreError
+            raise kind(f"{error}. {what}") from error
+        except (RefusedError, MessageError):
+            if sent:
+                log.warning("%s: sent an Abort for what was refused then", listed_names(sent))
+            self._commands.release_aborts(orders)
+            raise
+        self._commands.release_aborts(orders)
+        return result
 
     def _send_unstored(self, order: CommandOrder) -> bool:
         is_sent = False
@@ -227,3 +242,15 @@ class CommandRequests:
                 "(path_cones), so it would not do what is to be done at the end: take it for a SetPosEnd, or "
                 "give it a task with a path"
             )
+
+
+async def _wait_for_note(writing: Future[bool] | None) -> None:
+    """Wait until Aborts are noted, but not long: a disk that hangs must not keep back the answer."""
+    if writing is not None:
+        await asyncio.wait({asyncio.wrap_future(writing)}, timeout=NOTED_WITHIN)
+
+
+def _sent_in_words(sent: Sequence[str], *, is_pause: bool, is_lasting: bool) -> str:
+    what, abort = ("The pause", "an Abort") if is_pause else ("The Abort", "it")
+    recipients = f"sent to {listed_names(sent)} all the same" if sent else "sent to no robot"
+    return f"{what} is not stored; {abort} was {recipients}{f'; {STORED_LATER}' if is_lasting else ''}"

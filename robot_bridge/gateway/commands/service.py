@@ -16,6 +16,7 @@ from collections.abc import (
     Mapping,
     Sequence,
 )
+from concurrent.futures import Future
 from typing import Any
 
 from sqlalchemy import Connection
@@ -89,7 +90,11 @@ class CommandService(CommandReader):
 
     async def restore(self) -> None:
         """Load the commands that an earlier gateway left open, and the Aborts that it left unstored."""
-        await asyncio.to_thread(self._unstored.restore)
+        left = await asyncio.to_thread(self._unstored.read_notes)
+        for order in left:
+            log.warning("robot %r: Abort %s was not stored", order.robot, order.command)
+        # One of a robot that was removed would meet whoever comes by its name.
+        self._unstored.keep(order for order in left if order.robot in self._robots)
         stored = await self._database.run(commands.still_open)
         self.adopt(command for command in stored if self._fence.owns(command.report.robot))
 
@@ -116,9 +121,14 @@ class CommandService(CommandReader):
         """
         return await to_its_end(self._issue(orders, also))
 
-    def keep_aborts(self, aborts: Iterable[CommandOrder]) -> None:
-        """Store Aborts of a stop that is over, and before any other message of their robots."""
-        self._unstored.keep(aborts)
+    def keep_aborts(self, aborts: Iterable[CommandOrder]) -> Future[bool] | None:
+        """Store Aborts before any other message of their robots; return the writing of their notes."""
+        return self._unstored.keep(aborts)
+
+    def release_aborts(self, aborts: Iterable[CommandOrder]) -> None:
+        """Keep Aborts no longer: they are stored, or refused."""
+        for order in aborts:
+            self._unstored.discard(order)
 
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         """Send a robot the path to its target by ``write``. The target stays the command.
@@ -130,6 +140,8 @@ class CommandService(CommandReader):
     async def mark_sending(self, robot: str, sa_id: int) -> bool:
         """Record message ``sa_id`` as delivered, before it is sent; return false where its command has ended.
 
+        Neither is one sent that an Abort has overtaken, which is on its way.
+
         If recorded afterwards, a gateway that is killed in between would leave a command queued that the
         robot carries out, and withdraw it as one that never reached the robot.
 
@@ -139,8 +151,8 @@ class CommandService(CommandReader):
         if sa_id in self._open.queued:
             await to_its_end(self._hand_over(robot, sa_id))
             known = any(command.sa_id == sa_id for command in self._open.of(robot))
-        elif self._unstored.of([robot]):
-            # A path for a command that has begun: it must not follow the Abort, now or on a later connection.
+        elif self._unstored.of([robot]) or self.awaits_abort_after(robot, sa_id):
+            # A path for a command that has begun, or a target that comes again on a later connection.
             known = await to_its_end(self._outlives_abort(robot, sa_id))
         else:
             await self._held.confirm([robot])
@@ -245,6 +257,7 @@ class CommandService(CommandReader):
 
     async def give_up(self, robot: str, reason: str) -> None:
         """End every command of a robot, which will not carry them out."""
+        self._unstored.drop(robot)
         await to_its_end(self._give_up(robot, reason))
 
     async def resolve_uncertain_commit(self) -> None:
@@ -255,7 +268,7 @@ class CommandService(CommandReader):
                 return
 
     async def save_progress(self) -> None:
-        """Store kept Aborts, the progress of robots along their paths, and late acknowledgements.
+        """Store kept Aborts, note those that are left, store progress along paths and late acknowledgements.
 
         A robot that another gateway has by now does not prevent storing those of others. Raises StoreError.
         """
@@ -310,7 +323,8 @@ class CommandService(CommandReader):
             except DataRefusedError:
                 raise
             except StoreError:
-                self._unstored.keep(order for order in orders if not order.is_emergency)
+                # Part of a change of a queue, which is refused as a whole, is one with a task.
+                self._unstored.keep(o for o in orders if not o.is_emergency and o.task is None)
                 raise
 
     async def _issue_unstored(self, robot: str) -> None:
@@ -360,9 +374,9 @@ class CommandService(CommandReader):
                 self._events.publish(OutboxChanged(robot))
 
     async def _outlives_abort(self, robot: str, sa_id: int) -> bool:
-        """Store the robot's Aborts, and withdraw message ``sa_id`` if there were any to be sent."""
+        """Store the robot's Aborts, and withdraw message ``sa_id`` if one after it is to be sent."""
         async with self._turns.of([robot]), self._held_behind_aborts([robot]):
-            if not self.awaits_any_abort(robot):
+            if not self.awaits_abort_after(robot, sa_id):
                 return True
             await self._held.run([robot], answers.remove_answers, [sa_id])
             return False

@@ -88,6 +88,10 @@ class CommandReader:
         """Return whether an Abort is on its way to the robot, an emergency stop's or another."""
         return self.awaits_abort(robot) or self.awaits_stop(robot)
 
+    def awaits_abort_after(self, robot: str, sa_id: int) -> bool:
+        """Return whether an Abort that is newer than message ``sa_id`` is on its way to the robot."""
+        return any(c.is_abort and c.is_on_its_way and c.sa_id > sa_id for c in self._open.of(robot))
+
     def awaits_stop(self, robot: str) -> bool:
         """Return whether the Abort of an emergency stop is on its way to the robot."""
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))

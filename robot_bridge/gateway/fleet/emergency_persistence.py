@@ -8,6 +8,7 @@ import errno
 import hashlib
 import json
 import logging
+import math
 import os
 import time
 import uuid
@@ -23,7 +24,12 @@ from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainE
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
-from ...core.messages.base import MessageError, check_command_id, check_robot_name
+from ...core.messages.base import (
+    MessageError,
+    check_command_id,
+    check_expires_in,
+    check_robot_name,
+)
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import write_bare_aborts
@@ -36,7 +42,7 @@ from ..storage.repositories.robots import FencedError
 
 # --- Journals: small files of this computer that outlive the gateway ---
 # A stop or an Abort is sent before it is stored. Where the database is unavailable then, and the gateway dies
-# before it is back, or where an older state of the database is restored, the next gateway reads it here.
+# before it is back, the next gateway reads it here; a stop in force also where an older state is restored.
 
 log = logging.getLogger(__name__)
 
@@ -57,22 +63,22 @@ def journal_files(database: URL, folder: Path, gateway: str | None = None) -> tu
 
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
-ROOM = 16_384
-"""bytes reserved for stops in case the disk is full by then."""
 
 
 class JournalFile:
     """A list of JSON objects in a file; there is no file where the list is empty.
 
-    ``what`` names the entries in messages.
+    ``what`` names the entries in messages; ``room`` are the bytes reserved for them in case the disk is full.
     """
 
     what = ""
+    room = 16_384
 
     def __init__(self, file: Path) -> None:
         self._file = file
         # Two: the second stop on a full disk is written before the first one's room is free again.
         self._rooms = [file.with_name(f".{file.name}.{name}") for name in ("room", "spare")]
+        self._fault = ""
         # One thread: the last write wins.
         self._thread = ThreadPoolExecutor(1, self.what)
 
@@ -87,10 +93,10 @@ class JournalFile:
             )
         self._set_room_aside()
 
-    def write_entries(self, entries: Iterable[object]) -> Future[None]:
+    def write_entries(self, entries: Iterable[object]) -> Future[bool]:
         """Write ``entries``, and no others; the future is done when they are on the disk.
 
-        A failed write is logged: it must not prevent a stop from being sent.
+        A failed write is logged, and its result is false: it must not prevent a stop from being sent.
         """
         return self._thread.submit(self._write, list(entries))
 
@@ -116,7 +122,7 @@ class JournalFile:
             noted = None
         return (noted, None) if isinstance(noted, list) else ([], "could not be understood")
 
-    def _write(self, entries: list[object]) -> None:
+    def _write(self, entries: list[object]) -> bool:
         try:
             if entries:
                 self._write_text(json.dumps(entries).encode())
@@ -125,7 +131,12 @@ class JournalFile:
                 self._set_room_aside()
         except Exception as error:
             why = (error.strerror if isinstance(error, OSError) else None) or error
-            log.error("%s cannot be noted in %s: %s; they go out all the same", self.what, self._file, why)
+            if (fault := f"{self.what} cannot be noted in {self._file}: {why}") != self._fault:
+                log.error("%s; they go out all the same", fault)
+            self._fault = fault
+            return False
+        self._fault = ""
+        return True
 
     def _write_text(self, text: bytes) -> None:
         try:
@@ -143,7 +154,7 @@ class JournalFile:
         for room in self._rooms:
             with contextlib.suppress(OSError):
                 if not room.is_file():
-                    write_state(room, b" " * ROOM, mode=0o600)
+                    write_state(room, b" " * self.room, mode=0o600)
 
 
 class StopJournal(JournalFile):
@@ -151,7 +162,7 @@ class StopJournal(JournalFile):
 
     what = "emergency stops"
 
-    def write(self, stops: Sequence[StopRow]) -> Future[None]:
+    def write(self, stops: Sequence[StopRow]) -> Future[bool]:
         """Write ``stops``, and no others; see :meth:`write_entries`."""
         return self.write_entries(map(_plain, stops))
 
@@ -192,56 +203,98 @@ def _stop(noted: Any) -> StopRow | None:
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)
 
 
+ABORT_VALID_S = 86_400.0
+"""seconds after which a noted Abort is dropped: the robot does something else by then."""
+
+
 class AbortJournal(JournalFile):
-    """The Aborts that are sent and not stored."""
+    """The Aborts that are sent and not stored in the database with the id ``database``."""
 
     what = "Aborts"
+    room = 1_000_000
 
-    def write(self, orders: Sequence[CommandOrder]) -> Future[None]:
+    def __init__(self, file: Path, database: str) -> None:
+        super().__init__(file)
+        self._database = database
+        self._at: dict[str, float] = {}
+
+    def write(self, orders: Sequence[CommandOrder]) -> Future[bool]:
         """Write ``orders``, and no others; see :meth:`write_entries`."""
-        return self.write_entries(map(_plain_abort, orders))
+        now, at = time.time(), self._at
+        self._at = {order.command: at.get(order.command, now) for order in orders}
+        return self.write_entries([self._plain(order) for order in orders])
 
     def read(self) -> list[CommandOrder]:
-        """Return the Aborts that an earlier gateway left; what cannot be understood is logged."""
+        """Return the Aborts that an earlier gateway left on this database, less than a day ago.
+
+        What cannot be understood is logged, and kept beside for whoever looks into it.
+        """
         noted, fault = self.read_entries()
-        orders = [_abort(one) for one in noted]
-        if None in orders and fault is None:
-            fault = "could not be understood"
+        orders = []
+        for one in noted:
+            try:
+                orders.append(self._understood(one))
+            except (MessageError, TypeError):
+                fault = "could not be understood"
         if fault is not None:
-            log.error("%s %s: look whether robots stand that were sent an Abort", self._file, fault)
+            unread = self._file.with_name(f"{self._file.name}.unread")
+            with contextlib.suppress(OSError):
+                self._file.replace(unread)
+            log.error(
+                "%s %s and is %s now: look whether robots stand that were sent an Abort",
+                self._file,
+                fault,
+                unread.name,
+            )
         return [order for order in orders if order is not None]
 
+    def _plain(self, order: CommandOrder) -> dict[str, object]:
+        return {
+            "command": order.command,
+            "robot": order.robot,
+            "by": order.operator,
+            "reason": order.reason,
+            "aborts": order.aborts,
+            "expires_in": order.expires_in,
+            "emergency": order.is_emergency,
+            "at": self._at[order.command],
+            "database": self._database,
+        }
 
-def _plain_abort(order: CommandOrder) -> dict[str, object]:
-    return {
-        "command": order.command,
-        "robot": order.robot,
-        "by": order.operator,
-        "reason": order.reason,
-        "aborts": order.aborts,
-        "emergency": order.is_emergency,
-    }
+    def _understood(self, noted: Any) -> CommandOrder | None:
+        """Return the noted Abort; None for one of another database, or too old.
 
-
-def _abort(noted: Any) -> CommandOrder | None:
-    """Return the journaled Abort; None for an entry that is none, or that no database could store."""
-    if not isinstance(noted, dict):
-        return None
-    command, robot, by, reason, aborts = (
-        noted.get(name) for name in ("command", "robot", "by", "reason", "aborts")
-    )
-    if not (isinstance(command, str) and isinstance(robot, str) and isinstance(by, str)):
-        return None
-    try:
+        :raises MessageError, TypeError: for an entry that is none, or that no database could store.
+        """
+        if not isinstance(noted, dict):
+            raise TypeError("no object")
+        command, robot, operator, database, aborts, reason = (
+            noted.get(name) for name in ("command", "robot", "by", "database", "aborts", "reason")
+        )
+        at, expires_in = noted.get("at"), noted.get("expires_in")
+        if not (isinstance(command, str) and isinstance(robot, str) and isinstance(operator, str)):
+            raise TypeError("no text")
+        if not isinstance(at, float):
+            raise TypeError("no time")
         check_command_id(command)
         check_robot_name(robot)
         if aborts is not None:
             check_command_id(aborts)
-    except (MessageError, TypeError):
-        return None
-    reason = reason if isinstance(reason, str) else None
-    message = Abort(emergency=noted.get("emergency") is True)
-    return CommandOrder(command, robot, message, by, reason, aborts=aborts)
+        check_expires_in(expires_in, math.inf)
+        if database != self._database or time.time() - at > ABORT_VALID_S:
+            which = "of another database" if database != self._database else "too old"
+            log.warning("%s: Abort %s of robot %r is dropped: it is %s", self._file, command, robot, which)
+            return None
+        self._at[command] = at
+        return CommandOrder(
+            command,
+            robot,
+            Abort(emergency=noted.get("emergency") is True),
+            operator,
+            reason if isinstance(reason, str) else None,
+            expires_in=expires_in,
+            aborts=aborts,
+        )
 
 
 # --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---

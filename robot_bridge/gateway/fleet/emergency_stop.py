@@ -427,7 +427,7 @@ class EmergencyStops:
         if not operators_first:
             self.announce()
 
-    def _write_journal(self) -> futures.Future[None] | None:
+    def _write_journal(self) -> futures.Future[bool] | None:
         """Write the stop in force, and those that are not stored, to the journal.
 
         The one in force stays there for as long as it is: an older state of the database may be restored.

@@ -10,7 +10,7 @@ from functools import partial
 
 from sqlalchemy import Connection
 
-from ...core.errors import RefusedError
+from ...core.errors import RefusedError, StoreError
 from ...core.messages import queues as messages
 from ...core.messages.commands import AbortTask, CommandState
 from ...core.messages.records import (
@@ -48,6 +48,8 @@ class PauseService:
 
     def __init__(self, context: QueueContext, orders: CommandRequests) -> None:
         self._orders = orders
+        self._left: dict[str, list[CommandOrder]] = {}
+        """The Aborts of pauses that could not be stored, by robot."""
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
@@ -63,10 +65,18 @@ class PauseService:
         that is too long to be kept, and StoreError.
         """
         self._robots.check_known(request.robot)
+        # What is refused must not stop the robot while it waits for its turn.
+        self._doing_and_kept(request.robot)
+        # What the last pause has left would end the task that this one keeps.
+        self._commands.release_aborts(self._left.pop(request.robot, ()))
         pausing = start_task(self._pause_held(request, operator))
-        doing = self._commands.carried_out(request.robot)
-        aborts = [] if doing is None else [self._abort(request, operator, doing)]
-        return await self._orders.send_if_unstored(aborts, pausing, "The pause")
+        # An Abort of whatever the robot does by then, which holds its queue too, also where it does nothing.
+        abort = CommandOrder(str(uuid.uuid4()), request.robot, Abort(), operator, _because_paused(request))
+        try:
+            return await self._orders.send_if_unstored([abort], pausing, is_pause=True)
+        except StoreError:
+            self._left[request.robot] = [abort]
+            raise
 
     async def _pause_held(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         async with self._registry.holding([request.robot]):
@@ -78,37 +88,31 @@ class PauseService:
                     continue
             return await self._pause(request, operator)
 
-    def _abort(
-        self,
-        request: messages.PauseRobot,
-        operator: str,
-        doing: ActiveCommand | None,
-        task: str | None = None,
-    ) -> CommandOrder:
-        """Return the Abort of what a robot does; ``task`` is that of its queue by which it is kept."""
-        return CommandOrder(
-            str(uuid.uuid4()),
-            request.robot,
-            Abort(),
-            operator,
-            because("paused", request.reason),
-            aborts=None if doing is None else doing.report.command,
-            task=task,
-        )
-
     async def _pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         robot, queue = request.robot, self._registry.get(request.robot)
         reason, now = because(f"paused by {operator}", request.reason), self._clock.time()
-        doing = self._commands.carried_out(robot)
-        own = None if doing is None else _task_by(queue, doing.report.command)
-        kept = self._kept(robot, doing) if own is None else []
+        doing, own, kept = self._doing_and_kept(robot)
         if own is None and not kept:
             return await self._registry.save(queue, queue.paused(reason, operator, now))
         after = pause_with_task(queue, kept, reason, operator, now)
-        abort = self._abort(request, operator, doing, (own or kept[0]).id)
+        abort = CommandOrder(
+            str(uuid.uuid4()),
+            robot,
+            Abort(),
+            operator,
+            _because_paused(request),
+            aborts=None if doing is None else doing.report.command,
+            task=(own or kept[0]).id,
+        )
         write = partial(queues.save, before=queue, after=after)
         await self._registry.stored([robot], self._commands.issue([abort], write))
         return self._registry.accept(after)
+
+    def _doing_and_kept(self, robot: str) -> tuple[ActiveCommand | None, QueuedTask | None, list[QueuedTask]]:
+        """Return the command of a robot, its task of the queue, and else what is kept of it as tasks."""
+        doing = self._commands.carried_out(robot)
+        own = None if doing is None else _task_by(self._registry.get(robot), doing.report.command)
+        return doing, own, self._kept(robot, doing) if own is None else []
 
     def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
         """Return as tasks the robot's motion outside its queue, and its motion after another has passed."""
@@ -121,6 +125,10 @@ class PauseService:
             rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
             kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock.time()))
         return kept
+
+
+def _because_paused(request: messages.PauseRobot) -> str:
+    return because("paused", request.reason)
 
 
 def _task_by(queue: Queue, command: str) -> QueuedTask | None:

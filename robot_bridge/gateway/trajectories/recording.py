@@ -246,7 +246,7 @@ class TrajectoryWriter:
                 await write(work, *arguments, fixes)
             except DataRefusedError:
                 # A position or part of the work is refused: each is stored separately.
-                await self._write_or_give_back(fixes)
+                await self._write_or_requeue(fixes)
                 fixes = []
                 await write(work, *arguments, fixes)
             except Exception:
@@ -306,7 +306,7 @@ class TrajectoryWriter:
         first, second = [await self._write(*half) for half in halves]
         return WrittenRobots(first.removed | second.removed, first.refused | second.refused)
 
-    async def _write_or_give_back(self, fixes: Sequence[PackedFix]) -> None:
+    async def _write_or_requeue(self, fixes: Sequence[PackedFix]) -> None:
         try:
             await self._write([], fixes)
         except Exception:

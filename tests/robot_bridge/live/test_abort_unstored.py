@@ -74,13 +74,16 @@ def test_an_abort_that_could_not_be_stored_outlives_the_gateway(bridge):
     bridge.start_gateway()
     robot, desk = bridge.robot("r1"), bridge.desk()
     robot.plug_in(1)
-    # What is on its way to the robot may come once more, and the Abort after it.
-    robot.say(robot.wait_for("Abort", 30.0)["id"])
+    abort = robot.wait_for("Abort", 30.0)
+    assert [call for call in robot.calls if call["method"] in MOTIONS] == []
+    robot.say(abort["id"])
     assert desk.wait_for_step("target-it-1", "aborted")
     assert desk.wait_for_step("abort-it-1", "acknowledged")["operator"] == "Ada"
     robot.calls.clear()
     robot.plug_in(1)
-    assert [call for call in robot.calls if call["method"] == "SetPosEnd"] == []
+    # What waits for the robot comes in order: nothing was before this.
+    desk.send("target-it-2", "r1", "SetPosEnd", x=30.0, y=40.0)
+    assert robot.wait_for("SetPosEnd")["params"]["x"] == 30.0
     wait_until(lambda: not Path(f"{bridge.file}.aborts").exists())
 
 

@@ -65,6 +65,7 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
     end_gateway(first)
     values = "('on-sql', 1, 'sql', 1.0, 1)"
     first.sql(f"insert into robots (name, magic, link, received_at, ended_in_order) values {values}")
+    new_database.close()  # nobody may be connected to what is copied
     copies = [postgresql_server.copied_database(url.rpartition("/")[2]) for _ in range(2)]
     with contextlib.closing(DatabaseClient(copies[1])) as client:
         client.sql(f"update bridge set value = {HERE} where name = 'place'")

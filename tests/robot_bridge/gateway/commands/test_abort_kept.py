@@ -173,3 +173,25 @@ async def test_an_emergency_stop_waits_for_none(driving, lose, monkeypatch):
     assert written == [{True}]
     await driving.fleet.save()
     assert written == [{True}, {False}]
+
+
+async def test_a_target_on_its_way_is_not_sent_again_behind_an_abort(two):
+    """Nor before it: the robot would set off for a moment."""
+    await two.at(20.0, 40.0)
+    await two.send("far")
+    (target,) = await two.deliver()
+    await two.fleet.orders.abort(AbortTask("command-abort", robot="r1"), "Ada")
+    assert not await two.fleet.outboxes.mark_sending("r1", target.id)
+    assert two.waiting("r1") == ["Abort"]
+    await two.send("next")
+    (_, newer) = await two.deliver()
+    assert await two.fleet.outboxes.mark_sending("r1", newer.id)
+    await two.acknowledge_all()
+    assert await two.states() == {"far": "superseded", "abort": "acknowledged", "next": "acknowledged"}
+
+
+async def test_one_of_a_robot_that_is_removed_is_forgotten(driving, lose):
+    await abort_in_vain(driving, lose)
+    await driving.fleet._commands.give_up("r1", "removed")
+    await driving.fleet.save()
+    assert "abort" not in await driving.states()

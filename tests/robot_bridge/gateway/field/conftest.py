@@ -8,6 +8,8 @@ from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.phone import PHONE, chromium
 
+CHANGED = "ERR_NETWORK_CHANGED"
+
 
 @pytest.fixture(scope="module", name="chromium")
 def start_chromium():
@@ -17,6 +19,24 @@ def start_chromium():
             yield browser
     except StageError as error:
         pytest.skip(str(error))
+
+
+def load(page, address: str, faults: list[str]) -> None:
+    """Open a page; once more where Chromium gave up what it was loading, as a network came to this computer.
+
+    Tests of links that are cut make such networks, beside these.
+    """
+    from playwright.sync_api import Error
+
+    for _ in range(5):
+        try:
+            page.goto(address)
+        except Error as error:
+            faults.append(str(error))
+        if not any(CHANGED in fault for fault in faults):
+            return
+        faults[:] = [fault for fault in faults if CHANGED not in fault]
+    pytest.fail(f"{address} cannot be loaded: {CHANGED}")
 
 
 @pytest.fixture
@@ -38,7 +58,7 @@ def open_phone(chromium):
 
         page.on("pageerror", lambda error: note(f"error: {error}"))
         page.on("console", lambda said: said.type == "error" and note(f"console: {said.text}"))
-        page.goto(f"http://127.0.0.1:{bridge.port}/field{where}")
+        load(page, f"http://127.0.0.1:{bridge.port}/field{where}", faults)
         return page
 
     yield open_page

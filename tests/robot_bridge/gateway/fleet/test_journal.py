@@ -9,6 +9,7 @@ import os
 import stat
 import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,12 @@ from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.persistence import UnstoredAborts
-from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
+from robot_bridge.gateway.fleet.emergency_persistence import (
+    ABORT_VALID_S,
+    AbortJournal,
+    StopJournal,
+    journal_files,
+)
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.errors import StageError
 from tests.support.faults.disk import Disk
@@ -266,22 +272,38 @@ async def test_a_full_disk_takes_one_stop_after_the_other(tmp_path):
 
 ABORTS = [
     CommandOrder("abort-0001", "r1", Abort(), "Ada", "smoke"),
-    CommandOrder("abort-0002", "r1", Abort(), "Ada", aborts="target-0001"),
+    CommandOrder("abort-0002", "r1", Abort(), "Ada", expires_in=60.0, aborts="target-0001"),
     CommandOrder("abort-0003", "r2", Abort(emergency=True), "gateway"),
 ]
 
 
-async def test_aborts_are_read_as_they_were_written_and_gone_once_none_is_left(tmp_path):
-    file = tmp_path / "fleet.db.aborts"
-    journal = AbortJournal(file)
-    journal.write(ABORTS).result()
-    assert AbortJournal(file).read() == ABORTS
-    assert stat.S_IMODE(file.stat().st_mode) == 0o600
-    journal.write([]).result()
-    assert not file.exists() and AbortJournal(file).read() == []
+@pytest.fixture
+def aborts_file(tmp_path):
+    return tmp_path / "fleet.db.aborts"
 
 
-GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada"}'
+async def test_aborts_are_read_as_they_were_written_and_gone_once_none_is_left(aborts_file):
+    journal = AbortJournal(aborts_file, "db-1")
+    assert journal.write(ABORTS).result()
+    assert AbortJournal(aborts_file, "db-1").read() == ABORTS
+    assert stat.S_IMODE(aborts_file.stat().st_mode) == 0o600
+    assert journal.write([]).result()
+    assert not aborts_file.exists() and AbortJournal(aborts_file, "db-1").read() == []
+
+
+async def test_aborts_of_another_database_or_of_long_ago_stop_no_robot(aborts_file, monkeypatch):
+    AbortJournal(aborts_file, "db-1").write(ABORTS[:1]).result()
+    assert AbortJournal(aborts_file, "db-2").read() == []
+    # Written again it is as old as it was.
+    later = AbortJournal(aborts_file, "db-1")
+    now = time.time()
+    monkeypatch.setattr(time, "time", lambda: now + ABORT_VALID_S - 60)
+    later.write(later.read()).result()
+    monkeypatch.setattr(time, "time", lambda: now + ABORT_VALID_S + 60)
+    assert AbortJournal(aborts_file, "db-1").read() == []
+
+
+GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada", "at": 1e12, "database": "db-1"}'
 
 
 @pytest.mark.parametrize(
@@ -292,44 +314,68 @@ GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada"}'
         GOOD.replace("abort-0001", "x" * 65),
         GOOD.replace("r1", "no robot's name"),
         GOOD.replace('"Ada"', "7"),
+        GOOD.replace("1e12", '"now"'),
         GOOD.replace("}", ', "aborts": 7}'),
         GOOD.replace("}", ', "aborts": "short"}'),
+        GOOD.replace("}", ', "expires_in": "soon"}'),
+        GOOD.replace("}", ', "expires_in": -1}'),
     ],
 )
-def test_an_abort_that_cannot_be_understood_hides_no_other_and_is_in_the_log(tmp_path, caplog, bad):
-    file = tmp_path / "fleet.db.aborts"
-    file.write_text(f"[{bad}, {GOOD}]", encoding="utf-8")
-    assert AbortJournal(file).read() == [CommandOrder("abort-0001", "r1", Abort(), "Ada")]
-    assert "could not be understood: look whether robots stand that were sent an Abort" in caplog.text
-
-
-@pytest.mark.parametrize("bad", ["[" * 2000, "null", '{"robot": "r1"}', "x"])
-def test_a_damaged_file_of_aborts_ends_no_gateway(tmp_path, caplog, bad):
-    file = tmp_path / "fleet.db.aborts"
-    file.write_text(bad, encoding="utf-8")
-    assert AbortJournal(file).read() == []
+def test_an_abort_that_cannot_be_understood_hides_no_other_and_is_in_the_log(aborts_file, caplog, bad):
+    aborts_file.write_text(f"[{bad}, {GOOD}]", encoding="utf-8")
+    assert AbortJournal(aborts_file, "db-1").read() == [CommandOrder("abort-0001", "r1", Abort(), "Ada")]
+    assert "could not be understood" in caplog.text
     assert "look whether robots stand that were sent an Abort" in caplog.text
 
 
-def test_what_is_kept_is_noted_at_once_and_what_is_stored_at_the_next_notes(tmp_path):
-    class Notes:
-        def __init__(self):
-            self.written = []
+@pytest.mark.parametrize("bad", ["[" * 2000, "null", '{"robot": "r1"}', "x"])
+def test_a_damaged_file_of_aborts_ends_no_gateway_and_is_kept_for_whoever_looks_into_it(aborts_file, bad):
+    aborts_file.write_text(bad, encoding="utf-8")
+    assert AbortJournal(aborts_file, "db-1").read() == []
+    assert aborts_file.with_name("fleet.db.aborts.unread").read_text(encoding="utf-8") == bad
+    assert not aborts_file.exists()
 
-        def read(self):
-            return ABORTS[2:]
 
-        def write(self, orders):
-            self.written.append(list(orders))
+async def test_a_disk_that_takes_no_abort_is_in_the_log_once_and_the_result_says_so(aborts_file, caplog):
+    (blocked := aborts_file.with_name(".fleet.db.aborts.new")).mkdir()
+    journal = AbortJournal(aborts_file, "db-1")
+    assert [journal.write(ABORTS).result() for _ in range(2)] == [False, False]
+    assert caplog.text.count("Aborts cannot be noted in") == 1
+    blocked.rmdir()
+    assert journal.write(ABORTS).result()
 
+
+class Notes:
+    """Notes in memory, of which the first ``fails`` are not written."""
+
+    def __init__(self, fails=0):
+        self.written, self._fails = [], fails
+
+    def read(self):
+        return ABORTS[2:]
+
+    def write(self, orders):
+        done = Future()
+        done.set_result(len(self.written) >= self._fails)
+        self.written.append(list(orders))
+        return done
+
+
+def test_what_is_kept_is_noted_at_once_and_what_is_stored_at_the_next_notes():
     notes = Notes()
     kept = UnstoredAborts(notes)
-    kept.restore()
-    assert (kept.robots(), notes.written) == (["r2"], [])
-    kept.keep(ABORTS[:2])
-    assert notes.written == [[ABORTS[2], *ABORTS[:2]]]
-    kept.discard(ABORTS[0])
-    kept.drop("r2")
+    kept.keep(ABORTS[1:])
+    assert notes.written == [ABORTS[1:]]
+    kept.discard(ABORTS[1])
     kept.write_notes()
     kept.write_notes()
-    assert notes.written[1:] == [[ABORTS[1]]]
+    assert notes.written[1:] == [ABORTS[2:]]
+
+
+def test_notes_that_could_not_be_written_are_written_again():
+    notes = Notes(fails=2)
+    kept = UnstoredAborts(notes)
+    kept.keep(ABORTS[:1])
+    for _ in range(4):
+        kept.write_notes()
+    assert notes.written == [ABORTS[:1]] * 3

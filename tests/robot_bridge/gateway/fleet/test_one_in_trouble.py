@@ -75,17 +75,17 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
     roads, monkeypatch, caplog, error, said
 ):
     await roads.wait_at_the_crossing()
-    waiting, seen_to = roads.fleet.roads.waiting, []
+    waiting, sent_on = roads.fleet.roads.waiting, []
     monkeypatch.setitem(waiting._rows, "r2", waiting._rows["r1"]._replace(robot="r2", other="r1"))
 
-    async def end_waits(row, _seen):
+    async def send_on(row, _seen):
         if row.robot == "r1":
             raise error
-        seen_to.append(row.robot)
+        sent_on.append(row.robot)
 
-    monkeypatch.setattr(waiting, "_send_on", end_waits)
+    monkeypatch.setattr(waiting, "_send_on", send_on)
     await roads.fleet.watch_roads()
-    assert seen_to == ["r2"]
+    assert sent_on == ["r2"]
     assert said in caplog.text
 
 

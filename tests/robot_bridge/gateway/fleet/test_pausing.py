@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 import math
+import re
 
 import pytest
 
-from robot_bridge.core.errors import RefusedError, UncertainError
+from robot_bridge.core.errors import RefusedError, StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.queues import (
     GetQueue,
@@ -330,6 +331,46 @@ async def test_a_pause_of_which_nobody_knows_whether_it_was_stored_is_asked_for_
     await line.resume()
     assert await line.reach(60.0, 40.0) == ["SetPosEnd"]
     assert (await line.report()).tasks == []
+
+
+NOT_STORED = (
+    "the connection was lost during the commit. The pause is not stored; an Abort was sent to no robot; "
+    "it is stored and sent as soon as the database takes it"
+)
+
+
+async def test_a_pause_that_is_lost_becomes_an_abort_that_holds_the_queue(line, lose):
+    await line.set(task("a"), task("b"))
+    await line.yard.acknowledge_all()
+    lose(line.yard, insert_commands, False, StoreError)
+    with pytest.raises(StoreError, match=re.escape(NOT_STORED)):
+        await pause(line)
+    await line.yard.fleet.save()
+    assert await line.reach(35.0, 40.0) == ["Abort"]
+    report = await line.report()
+    assert (report.state.value, [one.task for one in report.tasks]) == ("paused", ["task-000a", "task-000b"])
+    assert await line.sent() == [PLACES["a"], "Abort"]
+
+
+async def test_a_pause_that_is_lost_of_a_robot_that_does_nothing_becomes_an_abort_too(line, lose):
+    lose(line.yard, None, False, StoreError)
+    with pytest.raises(StoreError, match=re.escape(NOT_STORED)):
+        await pause(line)
+    assert await line.sent() == []
+    await line.yard.fleet.save()
+    assert await line.sent() == ["Abort"]
+
+
+async def test_a_pause_of_a_task_that_ends_before_its_abort_is_stored_holds_the_queue(line, lose):
+    await line.set(task("a"), task("b"))
+    await line.yard.acknowledge_all()
+    lose(line.yard, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await pause(line)
+    await line.reach(*PLACES["a"])
+    await line.yard.fleet.save()
+    assert (await line.report()).state.value == "paused"
+    assert PLACES["b"] not in await line.sent()
 
 
 async def test_a_robot_that_never_was_here_cannot_be_paused(line):

@@ -50,7 +50,7 @@ def test_a_cut_of_ten_seconds_loses_nothing_and_does_nothing_twice(cut_yard, des
     """One vehicle is on its way, another is sent off meanwhile: that is refused, and stays so."""
     yard, line = cut_yard
     driving, standing = (begin(yard, desk, y=y, speed=SLOW) for y in (8.0, 12.0))
-    command = send(desk, driving, x=50.0, y=8.0)
+    command = send(desk, driving, x=60.0, y=8.0)
     wait_under_way(desk, driving)
     line.cut()
     until = time.monotonic() + CUT_S
