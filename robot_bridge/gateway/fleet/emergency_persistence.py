@@ -211,7 +211,7 @@ class AbortJournal(JournalFile):
     """The Aborts that are sent and not stored in the database with the id ``database``."""
 
     what = "Aborts"
-    room = 1_000_000
+    room = 262_144
 
     def __init__(self, file: Path, database: str) -> None:
         super().__init__(file)

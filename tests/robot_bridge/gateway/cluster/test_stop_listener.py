@@ -220,7 +220,7 @@ async def test_it_goes_on_whatever_the_client_stumbles_over(nats, attempts, monk
 
 
 async def test_it_leaves_the_last_connection_of_an_account_to_all_messages(tmp_path, attempts, caplog):
-    heard = []
+    heard, later = [], "stops of other gateways come some milliseconds later"
     with NatsServer(tmp_path, "max_connections: 1") as server:
         bus = NatsBus([server.url], "b", PREFIX)
         async with running(bus, lambda *message: heard.append(message)):
@@ -228,8 +228,10 @@ async def test_it_leaves_the_last_connection_of_an_account_to_all_messages(tmp_p
             assert bus.connected and not bus._stops._connection.connected
             assert bus.publish(STOP, b"a stop")
             await until(lambda: heard == [(STOP, b"a stop")])
-    assert caplog.messages and len(caplog.messages) == len(set(caplog.messages))
-    assert all("stops of other gateways come some milliseconds later" in one for one in caplog.messages)
+            await until(lambda: any(later in one for one in caplog.messages))
+    assert len(caplog.messages) == len(set(caplog.messages))
+    # The other one may have been there first, for a moment.
+    assert all(later in one or "connecting again until it works" in one for one in caplog.messages)
 
 
 async def test_a_stop_that_cannot_be_taken_in_keeps_none_after_it(nats, caplog):
