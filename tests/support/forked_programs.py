@@ -277,7 +277,7 @@ def _become(order: dict[str, Any], module: str, parent: int) -> None:
     _libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     os.chdir(order["folder"])
     if network := order.get("network"):
-        with open(network) as file:  # noqa: PTH123
+        with Path(network).open() as file:
             if _libc.setns(file.fileno(), CLONE_NEWNET):
                 raise OSError(ctypes.get_errno(), f"{network} cannot be entered")
     # A Python may have set for itself where its libraries are.

@@ -212,6 +212,7 @@ class RequestRelay:
         self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
     ) -> list[dict[str, Any]]:
         """Return the results of requests about robots of other gateways; raises as their handlers do."""
+        # An Abort makes a robot stand for a pause, too; but a pause that waited too long is refused.
         stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
         relaying = asyncio.ensure_future(self._ask(requests, operator))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)

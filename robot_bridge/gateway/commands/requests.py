@@ -146,10 +146,10 @@ class CommandRequests:
             result = await storing
         except StoreError as error:
             is_refused = isinstance(error, DataRefusedError)
-            if is_pause and not is_refused:
-                await _wait_for_note(self._commands.keep_aborts(orders))
-            elif is_refused:
+            if is_refused:
                 self._commands.release_aborts(orders)
+            elif is_pause:
+                await _wait_for_note(self._commands.keep_aborts(orders))
             what = _sent_in_words(sent, is_pause=is_pause, is_lasting=not is_refused)
             kind = UncertainError if is_pause and isinstance(error, UncertainError) else StoreError
             raise kind(f"{error}. {what}") from error

@@ -374,7 +374,7 @@ class CommandService(CommandReader):
                 self._events.publish(OutboxChanged(robot))
 
     async def _outlives_abort(self, robot: str, sa_id: int) -> bool:
-        """Store the robot's Aborts, and withdraw message ``sa_id`` if one after it is to be sent."""
+        """Store the robot's Aborts, and withdraw message ``sa_id`` if a newer one is on its way."""
         async with self._turns.of([robot]), self._held_behind_aborts([robot]):
             if not self.awaits_abort_after(robot, sa_id):
                 return True
