@@ -310,7 +310,7 @@ def _check_packages(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
-    from ..gateway.api.http_pages import HEALTH
+    from ..gateway.api.metrics_and_queries import HEALTH
     from ..gateway.auth.port import address_here
 
     host = address_here(settings.host)

@@ -25,7 +25,7 @@ from ..core.messages.administration import Stopping
 from ..core.messages.base import MessageError, check_robot_name, to_json
 from ..core.sites.site import Site, check_site, frame_mismatch, frame_text, read_site
 from ..protocol.asyncapi import served
-from .api.http_pages import HEALTH, METRICS, SiteQueries, StatusPages
+from .api.metrics_and_queries import HEALTH, METRICS, SiteQueries, StatusPages
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface

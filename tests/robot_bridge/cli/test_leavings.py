@@ -13,7 +13,7 @@ from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
 from robot_bridge.gateway import monitoring as tasks
-from robot_bridge.gateway.api.http_pages import SiteQueries
+from robot_bridge.gateway.api.metrics_and_queries import SiteQueries
 from robot_bridge.gateway.auth.authorisation import AuthGate
 from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.field.page import FieldPage

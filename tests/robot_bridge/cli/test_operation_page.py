@@ -76,7 +76,7 @@ def test_every_setting_is_explained(page):
 def test_every_metric_is_one_that_there_is(page, root):
     source = "".join(
         (root / "robot_bridge" / "gateway" / name).read_text(encoding="utf-8")
-        for name in ("api/http_pages.py", "monitoring.py")
+        for name in ("api/metrics_and_queries.py", "monitoring.py")
     )
     named = set(re.findall(r"`robot_bridge_(\w+?)(?:_total)?[`{ ]", page))
     assert len(named) > 12

@@ -18,7 +18,7 @@ from websockets.http11 import Request
 from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.sites.frame import lonlat_of
 from robot_bridge.core.sites.site import read_site
-from robot_bridge.gateway.api.http_pages import MOST_AT_ONCE, MOST_FIELDS, SiteQueries, read_query
+from robot_bridge.gateway.api.metrics_and_queries import MOST_AT_ONCE, MOST_FIELDS, SiteQueries, read_query
 from robot_bridge.protocol.schemas import PARAMETERS, PROBLEM, ROUTE, SURFACES, openapi
 from tests.support.bridge.bridge_programs import wait_until
 

@@ -18,7 +18,7 @@ from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import LimitSettings, TrajectorySettings
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
-from robot_bridge.gateway.api.http_pages import SiteQueries
+from robot_bridge.gateway.api.metrics_and_queries import SiteQueries
 from robot_bridge.gateway.auth.authorisation import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses

@@ -1,4 +1,4 @@
-"""Pages over HTTP: health and metrics for monitoring, and queries on the site."""
+"""Pages over HTTP: ``/metrics`` and ``/healthz`` for monitoring, and queries on the site."""
 
 from __future__ import annotations
 
