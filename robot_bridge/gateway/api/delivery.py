@@ -6,8 +6,9 @@ import asyncio
 import base64
 import contextlib
 import logging
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Sequence
 from contextlib import AbstractAsyncContextManager
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from websockets.exceptions import ConnectionClosed
@@ -24,7 +25,26 @@ from ..monitoring import BackgroundTasks
 from ..storage.repositories.requests import AnswerRow, Outbox
 
 
-class Channel(Protocol):
+class Interruptible(Protocol):
+    """A connection on which a stop does not wait for a long message to its end."""
+
+    async def send(self, frame: str) -> None:
+        """Write a frame without waiting for a turn; raises ConnectionClosed."""
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message that is being sent, before a stop.
+
+        A connection on which that takes too long is cut: the other end hears the stop when it connects again.
+        """
+
+
+async def send_stop(connection: Interruptible, frame: str) -> None:
+    """Send a stop, before the rest of a long message to a slow client; raises ConnectionClosed."""
+    await connection.cut_if_busy()
+    await connection.send(frame)
+
+
+class Channel(Interruptible, Protocol):
     """The connection to one robot; frames are JSON-RPC 2.0 texts."""
 
     @property
@@ -53,9 +73,6 @@ class Channel(Protocol):
 
         Many robots may share one connection: a ``large`` message of one must not delay the others.
         """
-
-    async def send(self, frame: str) -> None:
-        """Write a frame without waiting for a turn; raises ConnectionClosed."""
 
     def send_at_once(self, frame: str) -> bool:
         """Write a frame now; return false, with nothing done, if that is impossible."""
@@ -87,6 +104,26 @@ LARGE = 100_000
 """bytes of a message above which its frame is built in another thread."""
 PIECE = 3 << 16
 """bytes encoded as base64 at once; a multiple of three, so that pieces can be concatenated."""
+ABORT, MAP = Abort.__name__, SetMap.__name__
+
+
+@dataclass
+class _SentMessages:
+    """What a robot was sent on one connection: all up to ``last`` and ``last_urgent``, and later Aborts."""
+
+    last: int = 0
+    last_urgent: int = 0
+    aborts: set[int] = field(default_factory=set)
+
+    def record(self, row: AnswerRow) -> None:
+        """Record a sent message; an Abort may be sent before older ones."""
+        if row.urgent:
+            self.last_urgent = row.id
+        elif row.op == ABORT:
+            self.aborts.add(row.id)
+        else:
+            self.last = row.id
+            self.aborts = {abort for abort in self.aborts if abort > row.id}
 
 
 class Delivery:
@@ -98,14 +135,13 @@ class Delivery:
         self._robot = robot
         self._work: asyncio.Task[None] | None = None
         self._stops = 0
-        self._last = {False: 0, True: 0}
-        """the ids of the last sent messages, by urgency."""
+        self._sent = _SentMessages()
         self._stopping = BackgroundTasks()
 
     @property
     def reader(self) -> Outbox:
         """The answers to read for the robot: those after the ones sent."""
-        return self._robot, self._last[False], self._last[True]
+        return self._robot, self._sent.last, self._sent.last_urgent
 
     def begin(self) -> None:
         """Deliver the outbox from its beginning: unacknowledged messages are sent again."""
@@ -128,12 +164,12 @@ class Delivery:
         It does not wait for the database; an emergency stop's Abort follows from the outbox under its own id.
         """
         self.outdate()
-        frame = self._channel.call(Abort.__name__, to_json(Abort(emergency=emergency)), call_id)
+        frame = self._channel.call(ABORT, to_json(Abort(emergency=emergency)), call_id)
         with log_and_continue(log, f"stopping robot {self._robot!r} at once"):
             # A task per robot would come after thousands of others.
             if self._channel.send_at_once(frame):
                 return
-        self._stopping.start(while_connected(self._channel.send(frame)))
+        self._stopping.start(while_connected(send_stop(self._channel, frame)))
 
     def outdate(self) -> None:
         """Discard messages read before: the robot is being sent a stop."""
@@ -143,11 +179,11 @@ class Delivery:
         await asyncio.sleep(after)
         event = self._fleet.outboxes.event(self._robot)
         # Local to this task: an ended one may still be on its way out.
-        last = self._last = {False: 0, True: 0}
+        sent = self._sent = _SentMessages()
         while True:
             event.clear()
             try:
-                if await self._send_waiting(last):
+                if await self._send_waiting(sent):
                     await event.wait()
             except ConnectionClosed:
                 return
@@ -159,10 +195,10 @@ class Delivery:
                 log_unforeseen(log, f"link {self._channel.name}: what waits for robot {self._robot!r}")
                 await asyncio.sleep(RETRY_AFTER)
 
-    async def _send_waiting(self, last: dict[bool, int]) -> bool:
-        """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
+    async def _send_waiting(self, sent: _SentMessages) -> bool:
+        """Send the messages that are not in ``sent``; return false when what was read is out of date."""
         stops = self._stops
-        for row in await self._fleet.outboxes.outbox(self._robot, last[False], last[True]):
+        for row in aborts_first(await self._unsent(sent)):
             # Recorded first: it must never be withdrawn as not yet sent. All else is recorded afterwards, so
             # that no Abort waits for the database, nor behind a message that does.
             drives = row.op in HELD_BACK
@@ -170,21 +206,64 @@ class Delivery:
             is_due = not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
             if self._stops != stops:
                 return False
+            goes_on = True
             if is_due and (frame := await self._framed(row)) is not None:
-                async with self._channel.lane(urgent=bool(row.urgent), large=len(frame) > LARGE):
+                is_large = len(frame) > LARGE
+                async with self._channel.lane(urgent=row.op == ABORT, large=is_large):
                     # While this waited for its turn the robot may have been sent a stop.
                     if self._stops != stops:
                         return False
                     if drives and not self._fleet.outboxes.may_send(self._robot, checked_at):
                         return False
-                    await self._channel.send(frame)
-            last[row.urgent] = row.id
+                    if row.op == ABORT:
+                        await send_stop(self._channel, frame)
+                    elif is_large:
+                        goes_on = await self._send_large(frame, sent)
+                    else:
+                        await self._channel.send(frame)
+            sent.record(row)
             if not drives:
                 await self._fleet.outboxes.delivered([row.id])
+            if not goes_on:
+                return False
         return True
 
+    async def _unsent(self, sent: _SentMessages) -> list[AnswerRow]:
+        rows = await self._fleet.outboxes.outbox(self._robot, sent.last, sent.last_urgent)
+        return [row for row in rows if row.id not in sent.aborts]
+
+    async def _send_large(self, frame: str, sent: _SentMessages) -> bool:
+        """Send a large message; return false when the robot has an Abort, which does not wait for its end."""
+        event = self._fleet.outboxes.event(self._robot)
+        sending = asyncio.create_task(self._channel.send(frame))
+        woken = asyncio.create_task(event.wait())
+        has_abort = False
+        try:
+            while not (sending.done() or has_abort):
+                await asyncio.wait((sending, woken), return_when=asyncio.FIRST_COMPLETED)
+                if woken.done():
+                    event.clear()
+                    woken = asyncio.create_task(event.wait())
+                    has_abort = await self._has_abort(sent)
+            if has_abort:
+                await self._channel.cut_if_busy()
+            await sending
+        finally:
+            woken.cancel()
+            sending.cancel()
+            # What else has come is read afterwards.
+            event.set()
+        return not has_abort
+
+    async def _has_abort(self, sent: _SentMessages) -> bool:
+        try:
+            return any(row.op == ABORT for row in await self._unsent(sent))
+        except StoreError:
+            # The next read of the outbox logs it. An Abort that is not stored comes without the outbox.
+            return False
+
     async def _framed(self, row: AnswerRow) -> str | None:
-        if row.payload is None and row.op == SetMap.__name__:
+        if row.payload is None and row.op == MAP:
             row = row._replace(payload=await self._fleet.maps.whole_or_around(self._robot))
         # A city's map takes long to encode as text; nobody else must wait for it.
         if row.payload is not None and row.op in PAYLOADS and len(row.payload) > LARGE:
@@ -208,6 +287,20 @@ class Delivery:
             who = self._channel.name, row.id, self._robot
             log.error("link %s: message %d for robot %r: %s", *who, error)
             return None
+
+
+def aborts_first(rows: Sequence[AnswerRow]) -> list[AnswerRow]:
+    """Return the messages in the order in which they are sent: an Abort does not wait for maps before it.
+
+    It stays behind what moves the robot: sent after the Abort, that would be carried out.
+    """
+    ordered: list[AnswerRow] = []
+    for row in rows:
+        at = len(ordered)
+        while row.op == ABORT and at and ordered[at - 1].op == MAP:
+            at -= 1
+        ordered.insert(at, row)
+    return ordered
 
 
 def _params(row: AnswerRow) -> dict[str, Any]:

@@ -302,8 +302,8 @@ class RobotSession:
 # error if it refuses.
 
 NAME = "websocket"
-FRAME_PIECE = 1 << 18
-"""characters of a message sent as one frame."""
+FRAME_PIECE = 1 << 15
+"""characters of a message sent as one frame: a stop is sent behind a whole one."""
 PING_TIMEOUT = 1.0
 """seconds after which a robot counts as gone when another one connects under its name."""
 REPLACED = 4001
@@ -347,6 +347,10 @@ class RobotChannel:
     def send_at_once(self, frame: str) -> bool:
         """Write a frame now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message, before a stop; cut the connection if that takes too long."""
+        await self._connection.cut_if_busy()
 
     async def answers(self) -> bool:
         """Return whether the robot answers a ping within a second."""
@@ -408,7 +412,8 @@ class RobotConnection:
 
 
 async def send_frame(connection: ClientConnection, frame: str) -> None:
-    """Send a message, a large one in several frames: as one it would block the gateway while it is copied.
+    """Send a message, a large one in several frames: as one it would block the gateway while it is copied,
+    and be buffered as a whole before a stop.
 
     It is sent to its end even if the sender is cancelled: nothing could follow a truncated message.
     """

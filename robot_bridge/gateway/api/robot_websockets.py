@@ -39,7 +39,7 @@ from ..fleet.service import Fleet
 from ..model.events import GatewaysChanged, RobotLeft
 from ..model.robots import RobotPose
 from ..monitoring import BackgroundTasks
-from .delivery import while_connected
+from .delivery import send_stop, while_connected
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
 
@@ -140,7 +140,7 @@ class LinkConnection:
             place.session.outdate()
         frame = jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))
         if not self.send_at_once(frame):
-            self._tasks.start(while_connected(self.send(frame)))
+            self._tasks.start(while_connected(send_stop(self, frame)))
 
     async def send_gateways(self) -> None:
         """Send the gateways' addresses to a link that has said hello; raises ConnectionClosed."""
@@ -187,6 +187,10 @@ class LinkConnection:
     def send_at_once(self, frame: str) -> bool:
         """Write a message now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message, before a stop; cut the connection if that takes too long."""
+        await self._connection.cut_if_busy()
 
     async def answers(self) -> bool:
         """Return whether the link answers a ping within a second."""

@@ -20,6 +20,7 @@ from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS
 from ..auth.client_connection import RateLimit
 from ..fleet.service import Fleet
+from .delivery import Interruptible
 from .robot_session import RobotSession, RobotSessions
 
 log = logging.getLogger(__name__)
@@ -32,7 +33,7 @@ SEPARATOR = "/"
 Work = Coroutine[Any, Any, None]
 
 
-class SharedConnection(Protocol):
+class SharedConnection(Interruptible, Protocol):
     """The connection shared by the robots of a link."""
 
     @property
@@ -45,9 +46,6 @@ class SharedConnection(Protocol):
 
     def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
         """Wait for the turn of a message."""
-
-    async def send(self, frame: str) -> None:
-        """Write a frame."""
 
     def send_at_once(self, frame: str) -> bool:
         """Write a frame now; return false if that is impossible."""
@@ -123,6 +121,10 @@ class LinkedRobotChannel:
     def send_at_once(self, frame: str) -> bool:
         """Write a frame now; return false if that is impossible."""
         return self._shared.send_at_once(frame)
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message of any robot of the link, before a stop."""
+        await self._shared.cut_if_busy()
 
     async def answers(self) -> bool:
         """Return whether the link is alive: only the link knows whether the robot behind it is."""

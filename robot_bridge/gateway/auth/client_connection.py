@@ -195,6 +195,10 @@ CONTROL_FRAMES_PER_S = 20.0
 CONTROL_BURST = 100.0
 NEVER_REFUSED = "emergency_stop"
 """This request is allowed beyond the rate limit."""
+UNSENT_BYTES = 16_384
+"""bytes of a connection that the system holds before they are on their way: a stop is sent behind them."""
+STOP_PATIENCE_S = 0.5
+"""seconds that a stop waits for the rest of a long message to a slow client."""
 CLOSE_WITHIN = 0.5
 """Seconds that an expelled client has for a clean close."""
 _PING = b"gateway"
@@ -278,10 +282,12 @@ class ClientConnection(ServerConnection):
         }[identity.kind]
         self._messages, self._patience = RateLimit(rate, float(burst)), RateLimit(rate / 10, float(burst))
         self.protocol.max_message_size = largest_message
-        # Data buffered by the system for a slow client is old when it arrives.
+        # Data buffered by the system for a slow client is old when it arrives, and a stop is behind it.
         own = self.transport.get_extra_info("socket")
         with contextlib.suppress(OSError):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
+            if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+                own.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_BYTES)
         self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
 
     def handle_at_once(self, handler: Callable[[bytes], bool]) -> None:
@@ -315,6 +321,29 @@ class ClientConnection(ServerConnection):
         else:
             for text in texts:
                 await self.send(text)
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message that is being sent, before a stop.
+
+        Nothing can be sent between its pieces, and on a slow line it takes minutes: after
+        :data:`STOP_PATIENCE_S` the connection is cut. The client connects again, and hears the stop first.
+        """
+        until = self.loop.time() + STOP_PATIENCE_S
+        while (message := self.send_in_progress) is not None:
+            await asyncio.wait([message], timeout=max(0.0, until - self.loop.time()))
+            if message.done() or self.loop.time() < until:
+                continue
+            if self.transport.get_write_buffer_size() > 0:
+                log.warning(
+                    "%s from %s is cut off: a stop would wait for the rest of a long message on its slow "
+                    "line; it is sent the stop when it connects again",
+                    self.who,
+                    self.address,
+                )
+                self.transport.abort()
+                return
+            # The line is fast, and this process slow.
+            until = self.loop.time() + STOP_PATIENCE_S
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, with or without the client's close; further messages are ignored."""

@@ -251,8 +251,8 @@ def _stamps(files: ServerFiles) -> tuple[object, ...]:
 # --- The gateway's port: listening, with the limits before admission ---
 
 PING_INTERVAL = 5.0
-WRITE_LIMIT = 65_536
-"""bytes buffered in this process for a client before its senders must wait."""
+WRITE_LIMIT = 32_768
+"""bytes buffered in this process for a client before its senders must wait: a stop is sent behind them."""
 
 SPARE_FILES = 512
 """Number of files and database connections kept free."""

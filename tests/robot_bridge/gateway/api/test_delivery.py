@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosedOK
 
 from robot_bridge.core.clock import steady_time
 from robot_bridge.core.errors import StoreError
-from robot_bridge.gateway.api import delivery
+from robot_bridge.gateway.api import delivery, robot_session
 from robot_bridge.gateway.api.delivery import Delivery
 from robot_bridge.gateway.api.robot_session import RobotChannel
 from robot_bridge.gateway.storage.repositories.requests import AnswerRow
@@ -83,6 +83,9 @@ class Connection:
     def __init__(self):
         self.frames = []
         self.is_shut = self.is_sending = False
+        self.is_slow, self.began, self.may_end = False, asyncio.Event(), asyncio.Event()
+        self.overtaken: int | None = None
+        """messages that had been sent when a stop asked for the rest of a large one to end."""
 
     def write_at_once(self, frame):
         if self.is_shut or self.is_sending:
@@ -93,7 +96,18 @@ class Connection:
     async def send(self, frame):
         if self.is_shut:
             raise ConnectionClosedOK(None, None)
+        if not isinstance(frame, str):
+            frame = "".join([piece async for piece in frame])
+            self.began.set()
+            if self.is_slow:
+                await self.may_end.wait()
         self.frames.append(json.loads(frame))
+
+    async def cut_if_busy(self):
+        if self.is_slow:
+            self.is_slow = False
+            self.may_end.set()
+            self.overtaken = len(self.frames)
 
     @property
     def sent(self):
@@ -218,6 +232,57 @@ async def test_a_message_that_cannot_be_read_is_left_out_and_in_the_log(line, ca
     assert line.connection.sent == [(2, "SetPosEnd")]
     (record,) = caplog.records
     assert record.getMessage().startswith("link websocket: message 1 for robot 'r1': SetPosEnd: ")
+
+
+async def test_an_abort_is_sent_before_maps_that_wait_and_behind_what_moves_the_robot(line):
+    maps = [row(1, "SetMap", "{}", b"a window"), row(2, "SetMap", "{}")]
+    await line.put(*maps, row(3, "Abort", "{}"), row(4), row(5, "Abort", "{}"))
+    line.delivery.begin()
+    await rest()
+    assert [id for id, _ in line.connection.sent] == [3, 1, 2, 4, 5]
+    await line.put(row(6))
+    assert [id for id, _ in line.connection.sent][-1] == 6
+    assert line.boxes.asked == [(0, 0), (4, 0)]
+
+
+async def test_a_map_that_an_abort_overtook_is_sent_when_the_database_is_back(line, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    await line.put(row(1, "SetMap", "{}", b"a window"), row(2, "Abort", "{}"))
+    monkeypatch.setattr(line.boxes, "delivered", failing_once(line.boxes.delivered))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(2, "Abort"), (1, "SetMap")]
+
+
+def failing_once(work):
+    failures = [StoreError("the database is away")]
+
+    async def work_or_fail(*arguments):
+        if failures:
+            raise failures.pop()
+        await work(*arguments)
+
+    return work_or_fail
+
+
+async def test_an_abort_does_not_wait_for_the_end_of_a_map_that_is_being_sent(line, monkeypatch):
+    monkeypatch.setattr(robot_session, "FRAME_PIECE", 40)
+    monkeypatch.setattr(delivery, "LARGE", 60)
+    line.connection.is_slow = True
+    await line.put(row(1, "SetMap", "{}", bytes(100)), row(2, "SetMap", "{}", bytes(200)))
+    line.delivery.begin()
+    async with asyncio.timeout(BUSY * 5):
+        await line.connection.began.wait()
+    await line.put(row(3))
+    assert line.connection.sent == []
+    # What the Abort takes back is gone from the outbox.
+    del line.boxes.rows[2]
+    await line.put(row(4, "Abort", "{}"))
+    async with asyncio.timeout(BUSY * 5):
+        while (2, "SetMap") not in line.connection.sent:
+            await asyncio.sleep(0.001)
+    assert line.connection.overtaken == 0
+    assert line.connection.sent == [(1, "SetMap"), (4, "Abort"), (2, "SetMap")]
 
 
 async def test_the_bytes_of_a_map_go_out_as_text(line):
@@ -374,6 +439,23 @@ async def test_a_stop_is_written_before_the_loop_has_another_turn():
     assert line.connection.sent == [("emergency-stop-0001", "Abort")]
     await rest()
     assert len(line.connection.sent) == 1
+
+
+async def test_a_stop_does_not_wait_for_the_rest_of_a_long_message(line):
+    line.connection.is_sending = line.connection.is_slow = True
+    line.delivery.stop_now("emergency-stop-0001")
+    await rest()
+    assert line.connection.overtaken == 0
+    assert line.connection.sent == [("emergency-stop-0001", "Abort")]
+
+
+async def test_an_abort_waits_for_no_turn_among_messages_of_other_robots(line):
+    channel = SharedChannel(line.connection)
+    line.delivery = Delivery(line.fleet, channel, "r1")
+    await line.put(row(1, "Abort", "{}"), row(2))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(1, "Abort")] and channel.asked == [(True, False), (False, False)]
 
 
 @pytest.mark.parametrize("how", ["a message is being sent", "it fails"])

@@ -42,6 +42,9 @@ class Connection:
             self.sent.append(json.loads(frame))
         return not self.is_sending
 
+    async def cut_if_busy(self):
+        self.sent.append("cut if busy")
+
     async def send(self, frame):
         self.sent.append(json.loads(frame))
 
@@ -268,7 +271,8 @@ async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(
     link.stop_all("emergency-stop-0001")
     assert len(connection.sent) == 1
     await link._tasks.wait()
-    assert [frame["params"] for frame in connection.sent] == [stop, stop]
+    before, cut, after = connection.sent
+    assert cut == "cut if busy" and [before["params"], after["params"]] == [stop, stop]
 
 
 async def test_what_stops_a_linked_robot_waits_for_no_turn_and_all_else_does(link):

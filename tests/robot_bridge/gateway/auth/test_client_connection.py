@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from functools import partial
 
 import pytest
@@ -11,6 +12,7 @@ from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 
 from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.auth import client_connection
 from robot_bridge.gateway.auth.accounts import TokenKind
 from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
 from tests.support.patience import BUSY, until
@@ -69,9 +71,11 @@ async def client(host):
     options |= {"ping_interval": 0.05, "ping_timeout": 0.5}
     async with serve(host.serve, "127.0.0.1", 0, process_request=host.let_in, **options) as server:
         port = server.sockets[0].getsockname()[1]
-        async with connect(f"ws://127.0.0.1:{port}", compression=None) as wire:
+        async with connect(f"ws://127.0.0.1:{port}", compression=None, max_size=None) as wire:
             await wire.ping()
             yield wire
+            # One that reads nothing would be waited for.
+            wire.transport.abort()
 
 
 async def test_who_answers_pings_is_measured_and_stays(host, client):
@@ -142,3 +146,48 @@ async def test_too_many_messages_are_refused_whichever_way_they_go(host, client)
         await client.recv()
     assert caught.value.rcvd.code == 1008
     assert len(host.came) < 2 * burst
+
+
+async def long_message(goes_on):
+    """Yield the pieces of a long message, all but the first once ``goes_on`` is set."""
+    yield "x" * 30_000
+    await goes_on.wait()
+    for _ in range(100):
+        yield "x" * 30_000
+
+
+async def test_a_stop_cuts_the_connection_of_a_client_that_is_slow_with_a_long_message(host, client, caplog):
+    client.transport.pause_reading()
+    host.goes_on.set()
+    sending = asyncio.create_task(host.visitor.send(long_message(host.goes_on)))
+    await until(lambda: host.visitor.transport.get_write_buffer_size() > 0)
+    await host.visitor.cut_if_busy()
+    with pytest.raises(ConnectionClosed):
+        await sending
+    assert "robot r from 127.0.0.1 is cut off: a stop would wait" in caplog.text
+
+
+async def test_a_stop_waits_for_a_long_message_that_only_the_gateway_is_slow_with(host, client, monkeypatch):
+    monkeypatch.setattr(client_connection, "STOP_PATIENCE_S", 0.01)
+    sending = asyncio.create_task(host.visitor.send(long_message(host.goes_on)))
+    await until(lambda: host.visitor.send_in_progress is not None)
+    cutting = asyncio.create_task(host.visitor.cut_if_busy())
+    assert not (await asyncio.wait([cutting], timeout=0.1))[0]
+    # On a busy machine the client may be slow with the rest.
+    monkeypatch.setattr(client_connection, "STOP_PATIENCE_S", 60.0)
+    await asyncio.sleep(0.02)
+    host.goes_on.set()
+    assert len(await client.recv()) == 101 * 30_000
+    await asyncio.gather(sending, cutting)
+    assert not host.visitor.is_gone
+
+
+async def test_little_waits_in_the_system_for_a_client_that_is_slow(host, client):
+    client.transport.pause_reading()
+    sent = 0
+    while host.visitor.transport.get_write_buffer_size() == 0:
+        host.visitor.write_at_once("x" * 1000)
+        sent += 1000
+    # What the client has received already is on its way no more.
+    received = client.transport.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    assert sent < received + 2 * client_connection.UNSENT_BYTES
