@@ -206,6 +206,7 @@ def test_what_an_emergency_stop_withdrew_need_not_have_been_acted_on(story):
     story.stored.steps[STOP] = [step("queued", 3.0), step("superseded", 3.1)]
     assert wrong(story, (2.0, 2.2), (3.05, 3.1)) == []
     # A stop of before or afterwards withdrew nothing.
+    story.stored.steps[TARGET][1].state = "acknowledged"
     (found,) = wrong(story, (3.05, 3.1))
     assert "never acted on it" in found
     (found,) = wrong(story, (0.9, 0.95), (9.0, 9.5))
@@ -217,6 +218,15 @@ def test_what_an_emergency_stop_withdrew_need_not_have_been_acted_on(story):
     story.lines.insert(0, line("acted", 1.15, op="SetPosEnd", number=1, id=5))
     story.lines.insert(1, line("acted", 1.16, op="SetPosEnd", number=1, id=7))
     assert any("acted on 2 times" in text for text in wrong(story, (2.0, 2.2), (3.05, 3.1)))
+
+
+def test_what_an_abort_took_back_before_it_was_sent_need_not_have_been_acted_on(story):
+    del story.lines[0]
+    story.stored.commands[TARGET].state = "aborted"
+    story.stored.steps[TARGET] = [step("queued", 1.0), step("delivered", 1.1), step("aborted", 3.1)]
+    assert wrong(story) == []
+    story.stored.steps[TARGET].insert(2, step("acknowledged", 1.2))
+    assert wrong(story) == [f"command {TARGET}: acknowledged, and the robot never acted on it"]
 
 
 def test_what_stops_and_refusals_must_keep_robots_from_is_found():
