@@ -26,7 +26,15 @@ from ..ros.robot import RosRobot
 from ..ros.sensing import Sensing
 from ..ros.site_maps import Grids, Masks
 from ..ros.tasks import Tasks
-from .connection import Answer, Inbox, JsonMessages, RosbridgeConnection, Subscription, encode
+from .connection import (
+    MAPS_PATIENCE_S,
+    Answer,
+    Inbox,
+    JsonMessages,
+    RosbridgeConnection,
+    Subscription,
+    encode,
+)
 from .decoding import ServiceResponse, convert
 from .goals import ActionGoals, GoalStore
 from .graph import Graph, GraphWatch
@@ -125,19 +133,24 @@ MOST_ANSWERS = 1000
 
 
 class RosbridgeActions:
-    """Commands one robot. ``server`` changes when its action servers have restarted."""
+    """Commands one robot. ``server`` changes when its action servers have restarted.
+
+    What is large goes over ``maps``, a connection of its own: no stop has to wait for the end of a map.
+    """
 
     def __init__(
         self,
         robot: str,
         settings: RosbridgeSettings,
         connection: RosbridgeConnection,
+        maps: RosbridgeConnection,
         outgoing: Outgoing,
         goals: ActionGoals,
     ) -> None:
         self._robot = robot
         self._patterns = settings.patterns
         self._connection = connection
+        self._maps = maps
         self._outgoing = outgoing
         self._goals = goals
         self._services: set[str] = set()
@@ -245,13 +258,13 @@ class RosbridgeActions:
     def publish_latched(self, setting: str, message: bytes) -> None:
         """Publish an encoded message on a topic of LATCHED: later subscribers receive it, too."""
         topic = self._topic(setting)
-        self._connection.advertise(topic, LATCHED[setting], latched=True)
-        self._connection.publish(topic, msgspec.Raw(message), latched=True)
+        self._maps.advertise(topic, LATCHED[setting], latched=True)
+        self._maps.publish(topic, msgspec.Raw(message), latched=True)
 
     def serve_map(self, grid: bytes) -> None:
         """Answer the service ``get_map`` with an encoded map."""
         reply = msgspec.Raw(b'{"map":' + grid + b"}")
-        self._connection.serve(self._topic("get_map"), GET_MAP, reply)
+        self._maps.serve(self._topic("get_map"), GET_MAP, reply)
 
     def _topic(self, setting: str) -> str:
         return self._patterns[setting].topic_of(self._robot)
@@ -313,6 +326,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         super().__init__(settings, RobotNotes(file), keeps_servers=False)
         self._settings = settings
         self._connection = RosbridgeConnection(server)
+        self._maps = RosbridgeConnection(server, MAPS_PATIENCE_S)
         self._watch = GraphWatch(self._connection, self)
         self._books = self._notes.read(GoalStore.from_json)
         self._acting: list[RosbridgeActions] = []
@@ -320,7 +334,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
 
     async def run(self, link: Link) -> None:
         """Control the robots behind the server until cancelled."""
-        work = (self._connection.run(), self._watch.run(), self._lead_all(link))
+        work = (self._connection.run(), self._maps.run(), self._watch.run(), self._lead_all(link))
         tasks = [asyncio.create_task(one) for one in work]
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -354,7 +368,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         def make(name: str) -> RosRobot[Graph]:
             sensing = Sensing(name, settings, link.frame)
             goals = ActionGoals(name, self._connection, self._store(name), self)
-            acting = RosbridgeActions(name, settings, self._connection, outgoing, goals)
+            acting = RosbridgeActions(name, settings, self._connection, self._maps, outgoing, goals)
             self._acting.append(acting)
             self._goals.append(goals)
             listening = RosbridgeSubscriptions(sensing, settings, self._connection)
@@ -377,7 +391,9 @@ class RosbridgeAdapter(RosAdapter[Graph]):
             await asyncio.sleep(max(0.001, EVERY - (time.monotonic() - now)))
 
     def _network_faults(self) -> list[str]:
-        return [*self._connection.faults, *([self._watch.fault] if self._watch.fault else [])]
+        # Without a server both connections say the same.
+        faults = dict.fromkeys((*self._connection.faults, *self._maps.faults))
+        return [*faults, *([self._watch.fault] if self._watch.fault else [])]
 
     @property
     def written_topics(self) -> list[str]:

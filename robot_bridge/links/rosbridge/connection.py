@@ -76,6 +76,8 @@ STABLE_AFTER = 5.0
 """seconds after which a connection counts as stable."""
 PING_EVERY = 5.0
 """seconds between pings; a server without an answer for as long again is gone."""
+MAPS_PATIENCE_S = 120.0
+"""seconds that a server has to answer a ping behind maps: a large one on a slow line."""
 MOST_KEPT = 64
 """messages of one topic that wait to be read; beyond that the oldest are discarded."""
 MOST_WAITING = 2_000
@@ -128,11 +130,13 @@ class Subscription:
 class RosbridgeConnection:
     """A client of one server. Not thread-safe.
 
-    ``session`` counts the connections; ``away`` is why there is none, None while connected.
+    ``session`` counts the connections; ``away`` is why there is none, None while connected. A server has
+    ``patience`` seconds to answer a ping.
     """
 
-    def __init__(self, server: Server) -> None:
+    def __init__(self, server: Server, patience: float = PING_EVERY) -> None:
         self._server = server
+        self._patience = patience
         self.away: str | None = f"{server.url}: not connected yet"
         self.session = 0
         self._faults: dict[str, tuple[float, str]] = {}
@@ -256,7 +260,7 @@ class RosbridgeConnection:
                     max_size=decoding.LARGEST_FRAME,
                     close_timeout=1,
                     ping_interval=PING_EVERY,
-                    ping_timeout=PING_EVERY,
+                    ping_timeout=self._patience,
                     **self._server.options(),
                 ) as connection:
                     await self._carry(connection)

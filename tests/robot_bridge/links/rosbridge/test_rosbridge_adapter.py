@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 
 import pytest
+from websockets.asyncio.server import serve
 
 from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.core.reconnection import ClientCredentials
@@ -33,6 +35,8 @@ from robot_bridge.links.rosbridge.decoding import ServiceCall, ServiceResponse
 from robot_bridge.links.rosbridge.goals import MOST_BEFORE, MOST_ENTRIES, ActionGoals, GoalStore
 from robot_bridge.links.rosbridge.graph import Graph
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
+from tests.support.bridge.cut_line import CutLine
+from tests.support.patience import until
 
 SERVER = Server("ws://127.0.0.1:9", ClientCredentials())
 
@@ -98,7 +102,7 @@ def test_a_cancel_comes_before_maps_and_never_before_the_goal_that_it_cancels(co
 def test_all_that_stops_a_robot_comes_before_the_maps_of_others(adapter, connection):
     settings = RosbridgeSettings(topics=TopicSettings(stop="/{robot}/stop"))
     goals = ActionGoals("r1", connection, GoalStore(), adapter)
-    acting = RosbridgeActions("r1", settings, connection, None, goals)
+    acting = RosbridgeActions("r1", settings, connection, connection, None, goals)
     acting.connect(
         Graph(
             topics={"/r1/cmd_vel": TWIST},
@@ -198,7 +202,7 @@ def test_of_goals_the_newest_are_remembered():
 
 def test_of_answers_that_nobody_has_read_the_newest_are_kept(adapter, connection):
     goals = ActionGoals("r1", connection, GoalStore(), adapter)
-    acting = RosbridgeActions("r1", RosbridgeSettings(), connection, None, goals)
+    acting = RosbridgeActions("r1", RosbridgeSettings(), connection, connection, None, goals)
     for number in range(MOST_ANSWERS + 1):
         acting._keep("stop", None, ServiceResponse(str(number)))
         goals._keep(None, ServiceResponse(str(number)))
@@ -250,3 +254,34 @@ async def test_what_is_said_without_a_connection_is_not_said_later():
     connection.call("/r1/stop", {}, print, urgent=True)
     await asyncio.sleep(0)
     assert waiting(connection) == []
+
+
+async def test_a_stop_does_not_wait_for_a_map_that_is_on_a_slow_line(tmp_path):
+    heard = []
+
+    async def hear(connection):
+        async for frame in connection:
+            heard.append(json.loads(frame)["op"])
+
+    async with serve(hear, "127.0.0.1", 0, max_size=None) as server:
+        line = CutLine(server.sockets[0].getsockname()[1])
+        here = Server(line.address, ClientCredentials())
+        adapter = RosbridgeAdapter(RosbridgeSettings(), here, tmp_path / "far.goals")
+        connection, maps = connections = adapter._connection, adapter._maps
+        running = [asyncio.create_task(one.run()) for one in connections]
+        await until(lambda: connection.away is None and maps.away is None)
+        settings = RosbridgeSettings(topics=TopicSettings(stop="/{robot}/stop", map="/{robot}/map"))
+        goals = ActionGoals("r1", connection, GoalStore(), adapter)
+        acting = RosbridgeActions("r1", settings, connection, maps, None, goals)
+        acting.connect(Graph(services=frozenset({"/r1/stop"})))
+        # It compresses badly, and takes a minute.
+        line.slow_down(1_000, 0.1)
+        acting.publish_latched("map", json.dumps(random.randbytes(500_000).hex()).encode())
+        await until(lambda: not maps._others)
+        acting.call("stop")
+        await until(lambda: "call_service" in heard)
+        assert "publish" not in heard
+        line.close()
+        for one in running:
+            one.cancel()
+        await asyncio.gather(*running, return_exceptions=True)
