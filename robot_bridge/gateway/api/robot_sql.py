@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from ...core.errors import DataRefusedError, NotReadyError, OtherRunError, RefusedError, StoreError
-from ...core.logs import TroubleNews, log_unforeseen
+from ...core.logs import TroubleNews
 from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name
 from ...core.messages.robots import PAYLOADS, REQUESTS, OpAck
 from ...protocol.codec import decode_request, parse_params
@@ -106,8 +106,12 @@ class SqlInterface:
             for some, result in zip(by_robot.values(), dealt, strict=True)
             if not isinstance(result, BaseException)
         ]
-        # Processed requests are answered, even if another robot's failed.
-        await self._finish(done)
+        # Processed requests are answered, even if another robot's failed. A Ready needs a table that the
+        # others do not need: while somebody has that locked, only robots that say Ready wait.
+        saying_ready = [one for one in done if any(outcome.admitted for outcome in one.outcomes)]
+        for some_done in ([one for one in done if one not in saying_ready], saying_ready):
+            if some_done:
+                await self._finish(some_done)
         for result in dealt:
             if isinstance(result, BaseException):
                 raise result
@@ -128,13 +132,16 @@ class SqlInterface:
         ids = [id for one in dealt for id in one.ids]
         try:
             await self._fleet.outboxes.finish(outcomes, ids, acks=True)
-        except DataRefusedError:
+        except DataRefusedError as error:
             if len(dealt) > 1:
                 for one in dealt:
                     await self._finish([one])
                 return
-            # Writes of the gateway should never be refused; a refused one must not repeat for ever.
-            log_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
+            # Of what the gateway writes only an administrator's rule refuses anything; it must not repeat for
+            # ever.
+            robot = repr(outcomes[0].robot) if outcomes else "unknown"
+            line = f"link sql: robot {robot}: requests {ids} stay without an answer: {error}"
+            self._fleet.repeated.warn(log, ("link sql:", "robot", robot, "answers"), line)
             await self._fleet.outboxes.finish([], ids, acks=True)
 
     async def _deal_with(self, row: RequestRow) -> RequestOutcome | None:

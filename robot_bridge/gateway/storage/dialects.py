@@ -128,8 +128,9 @@ class Dialect:
 _DEADLOCK = 1213
 _MARIADB_LOCK_TIMEOUT = 1205
 _RECORD_CHANGED = 1020
-_REFUSALS = (1153, 1366, 4025)
-"""Packet too large, invalid text, a violated constraint: the driver classes these as other errors."""
+_REFUSALS = (1153, 1366, 1644, 4025)
+"""Packet too large, invalid text, refused by a trigger, a violated constraint: the driver classes these as
+other errors."""
 _LARGEST_PACKET = 64 << 20
 
 
@@ -220,6 +221,8 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
 NOTIFICATIONS_LOCK = 0x666C656574
 """The number of the lock that a gateway holds while it wants notifications of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
+_RAISED = "P0"
+"""Beginning of the codes of errors that a trigger raises: the driver classes these as faulty statements."""
 _READ_ONLY = "25006"
 _POSTGRESQL_LOCK_TIMEOUT = "55P03"
 
@@ -286,6 +289,15 @@ class PostgreSQL(Dialect):
 
     def kept_waiting(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlstate", None) == _POSTGRESQL_LOCK_TIMEOUT
+
+    def refuses_data(self, error: SQLAlchemyError) -> bool:
+        code = getattr(getattr(error, "orig", None), "sqlstate", None) or ""
+        return super().refuses_data(error) or code.startswith(_RAISED)
+
+    def cause(self, error: SQLAlchemyError) -> str:
+        # The refused row differs each time: by it a lasting trouble would look like a new one.
+        detail = getattr(getattr(getattr(error, "orig", None), "diag", None), "message_detail", None)
+        return super().cause(error).replace(f"DETAIL: {in_one_line(detail)}", "").strip()
 
     def wait_for_locks(self, connection: Connection, *, briefly: bool) -> None:
         if connection.info.get("briefly", False) == briefly:

@@ -13,6 +13,7 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError
+from ...core.logs import TroubleNews
 from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
 from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
@@ -191,8 +192,7 @@ class TrajectoryWriter:
         self._removed: set[str] = set()
         self._jotted: list[tuple[int, list[PackedFix]]] = []
         """positions that a server may still lose, with the session in which they were written."""
-        self._complained: set[str] = set()
-        """robots for which a storage error was logged."""
+        self._news = TroubleNews()
         self._writing = asyncio.Lock()
         self._begun = self._done = 0
         """counts of writes of robots: the number of the last begun one, and of the last one that
@@ -299,9 +299,8 @@ class TrajectoryWriter:
             halves = _halves(known, fixes)
             if halves is None:
                 robot = str((known or fixes)[0][0])
-                if robot not in self._complained:
+                if self._news.has(robot, "left out"):
                     log.error("what is to be stored of robot %s is left out: %s", robot, error)
-                self._complained.add(robot)
                 return WrittenRobots(set(), {row[0] for row in known})
         first, second = [await self._write(*half) for half in halves]
         return WrittenRobots(first.removed | second.removed, first.refused | second.refused)

@@ -6,9 +6,12 @@ import json
 
 import pytest
 
-from robot_bridge.core.errors import StoreError
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.logs import IN_FULL
 from robot_bridge.core.messages.robots import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
 from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.gateway.storage.repositories import robots as stored_robots
 
 
 async def hello(yard, robot="r1", magic=7):
@@ -205,6 +208,46 @@ async def test_a_value_that_the_database_refuses_is_answered_and_holds_up_nobody
     )
     yard.ask("r1", Stopped())
     await asked_junk(yard, "refuses a value")
+
+
+async def test_a_ready_that_cannot_be_stored_keeps_no_other_robot_waiting(yard, monkeypatch):
+    """As while an administrator has the table of the robots locked, which only a Ready needs."""
+    await hello(yard)
+
+    def locked(*_):
+        raise StoreError("somebody else has it locked")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(stored_robots, "save", locked)
+        yard.ask("r2", Ready(8))
+        yard.ask("r1", Stopped())
+        with pytest.raises(StoreError, match="locked"):
+            await yard.link.poll()
+    assert (yard.waiting("r1"), yard.waiting("r2")) == (["OpAck"], [])
+    await yard.link.poll()
+    assert yard.waiting("r2") == ["OpAck", "SetMap"]
+
+
+async def test_answers_that_the_database_refuses_fill_no_log(yard, monkeypatch, caplog):
+    """As by a rule of an administrator for the rows of one robot; it asks again and again."""
+    for robot in ("r1", "r2"):
+        await hello(yard, robot)
+    write = answers.add_answers
+
+    def refuse(connection, rows):
+        if any(robot == "r1" for robot, _ in rows):
+            raise DataRefusedError("r1 is out of service")
+        write(connection, rows)
+
+    monkeypatch.setattr(answers, "add_answers", refuse)
+    for _ in range(2 * IN_FULL):
+        for robot in ("r1", "r2"):
+            yard.ask(robot, Stopped())
+        await yard.link.poll()
+    assert yard.sql("select count(*) from rr") == [(0,)]
+    assert len(yard.waiting("r2")) == 2 * IN_FULL and yard.waiting("r1") == []
+    assert "Traceback" not in caplog.text
+    assert caplog.text.count("stay without an answer: r1 is out of service") == IN_FULL
 
 
 def _write_nothing_where_something_must_be(connection):

@@ -8,9 +8,10 @@ import time
 import pytest
 from sqlalchemy import event, insert, select
 
-from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.schema import rr
+from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.frozen_server import frozen
 
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
@@ -83,6 +84,52 @@ async def test_one_that_is_given_no_password_says_where_to_give_it(monkeypatch):
         ):
             await other.run(names)
         await other.close()
+
+
+RULES = {
+    "postgresql": (
+        "create function out_of_service() returns trigger language plpgsql as "
+        "$$ begin raise exception '% is out of service', new.robot; end $$",
+        "create trigger out_of_service before insert on rr for each row "
+        "when (new.robot = 'r1') execute function out_of_service()",
+    ),
+    "mariadb": (
+        "create trigger out_of_service before insert on rr for each row begin if new.robot = 'r1' then "
+        "signal sqlstate '45000' set message_text = 'r1 is out of service'; end if; end",
+    ),
+}
+
+
+@SERVERS
+async def test_a_row_that_an_administrators_trigger_refuses_is_refused_as_data(url, kind, database):
+    """Else the database would count as out of order, and each robot's rows would wait for that one's."""
+    client = DatabaseClient(url)
+    for rule in RULES[kind]:
+        client.sql(rule)
+    refused, done = await asyncio.gather(
+        database.run(add, "r1"), database.run(add, "r2"), return_exceptions=True
+    )
+    assert isinstance(refused, DataRefusedError) and "r1 is out of service" in str(refused)
+    assert done is None and await database.run(names) == ["r2"]
+    client.sql("drop trigger out_of_service" + (" on rr" if kind == "postgresql" else ""))
+    if kind == "postgresql":
+        client.sql("drop function out_of_service")
+    client.close()
+
+
+@pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+async def test_the_row_that_a_constraint_refuses_is_not_named_with_the_constraint(url, database):
+    """It differs each time: a trouble that lasts would be a new one for the log with every attempt."""
+    await database.run(
+        lambda one: one.exec_driver_sql("alter table rr add constraint no_r1 check (robot <> 'r1')")
+    )
+    texts = set()
+    for _ in range(2):
+        with pytest.raises(DataRefusedError, match=r'violates check constraint "no_r1"$') as refused:
+            await database.run(add, "r1")
+        texts.add(str(refused.value))
+    assert len(texts) == 1
+    await database.run(lambda one: one.exec_driver_sql("alter table rr drop constraint no_r1"))
 
 
 @SERVERS
