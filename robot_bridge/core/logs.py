@@ -92,6 +92,8 @@ def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: Te
     # Its errors are about peers that hang up; the bridge itself logs those that matter.
     logging.getLogger("websockets").setLevel(logging.CRITICAL)
     logging.getLogger("alembic").setLevel(logging.WARNING)
+    # It warns of each statement that fails among several, whose error it raises as well.
+    logging.getLogger("psycopg").setLevel(logging.ERROR)
 
 
 # --- Unforeseen errors: logged in full, and reported to the caller by a number ---

@@ -131,6 +131,8 @@ _RECORD_CHANGED = 1020
 _REFUSALS = (1153, 1366, 1644, 4025)
 """Packet too large, invalid text, refused by a trigger, a violated constraint: the driver classes these as
 other errors."""
+_NO_CONNECTION_LEFT = (1040, 1203, 1226)
+"""Too many connections of all accounts, of this one, and by this account's own limit."""
 _LARGEST_PACKET = 64 << 20
 
 
@@ -182,6 +184,8 @@ class MariaDB(Dialect):
     def advice_on(self, error: SQLAlchemyError) -> str:
         if isinstance(error, DBAPIError) and self.kept_waiting(error):
             return f"{LOCKED} show full processlist and information_schema.innodb_trx name who it is"
+        if _code(error) in _NO_CONNECTION_LEFT:
+            return "raise max_connections, or the limit of this account: allow ten for a gateway"
         return self.advice
 
     def refuses_data(self, error: SQLAlchemyError) -> bool:
@@ -218,6 +222,12 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
     "keepalives_interval": 2,
     "keepalives_count": 3,
 }
+ENDLESS = (
+    "select set_config(name, '0', false) from pg_settings "
+    "where name in ('idle_session_timeout', 'transaction_timeout')"
+)
+"""Switches off limits that an administrator may have set for short sessions: they would end the connections
+that a gateway keeps. Older servers have not both of them."""
 NOTIFICATIONS_LOCK = 0x666C656574
 """The number of the lock that a gateway holds while it wants notifications of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
@@ -340,6 +350,7 @@ def _postgresql_limits(patience: float) -> Any:
             cursor.execute(f"set statement_timeout = {round(patience * 1000)}")
             cursor.execute(f"set lock_timeout = {LOCK_TIMEOUT_S * 1000}")
             cursor.execute(f"set idle_in_transaction_session_timeout = {round(patience * 1000)}")
+            cursor.execute(ENDLESS)
         connection.commit()
 
     return limit

@@ -82,6 +82,7 @@ class SingletonLock:
         self._where = shown(url)
         self._lock: GatewayLock = FileLock(url) if url.get_backend_name() == "sqlite" else ServerLock(url)
         self._does = does
+        self._news = TroubleNews()
         self._run = {
             "run": uuid.uuid4().hex,
             "does": does,
@@ -114,7 +115,8 @@ class SingletonLock:
             try:
                 await asyncio.to_thread(self._lock.ping)
             except StoreError as error:
-                log.error("%s; its lock is taken anew as soon as it is back", error)
+                if self._news.has("lock", str(error)):
+                    log.error("%s; its lock is taken anew as soon as it is back", error)
                 await self._reacquire()
 
     async def release(self) -> None:
@@ -309,6 +311,10 @@ _LOCKING = {
     ),
     "mariadb": (
         f"set session wait_timeout = {GHOST_S}",
+        # An administrator's limit for transactions would end this one, which never does anything.
+        "set session idle_transaction_timeout = 0",
+        "set session idle_readonly_transaction_timeout = 0",
+        "set session idle_write_transaction_timeout = 0",
         f"select name from bridge where name = '{ROW}' for update nowait",  # nosec B608 # a name of ours
     ),
 }

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from sqlalchemy import Engine
 
 from ...core.errors import in_one_line
+from ...core.logs import TroubleNews
 from ..monitoring import wait_at_most
 from .roles.blocking_sessions import Offences
 
@@ -153,6 +154,7 @@ class NotifiedWakeup:
         self.is_flooded = False
         """Whether the listener is off because of a flood."""
         self._news = asyncio.Event()
+        self._trouble = TroubleNews()
         self._task: asyncio.Task[None] | None = None
 
     async def enable_notifications(self) -> bool:
@@ -193,18 +195,20 @@ class NotifiedWakeup:
                 self.is_flooded = False
                 continue
             except (psycopg.Error, OSError) as error:
-                log.warning("notifications are lost, looking once a second meanwhile: %s", in_one_line(error))
+                if self._trouble.has("notifications", why := in_one_line(error)):
+                    log.warning("notifications are lost, looking once a second meanwhile: %s", why)
             await asyncio.sleep(RETRY_AFTER_S)
 
     def _connect(self) -> Connection[Any]:
         import psycopg
         from psycopg import sql
 
-        from .dialects import CONNECT_ARGUMENTS
+        from .dialects import CONNECT_ARGUMENTS, ENDLESS
 
         arguments, options = self._engine.dialect.create_connect_args(self._engine.url)
         options = {**options, **CONNECT_ARGUMENTS, "autocommit": True}
         connection: Connection[Any] = psycopg.connect(*arguments, **options)
+        connection.execute(ENDLESS)
         connection.execute(sql.SQL("listen {}").format(sql.Identifier(self._channel)))
         return connection
 

@@ -26,7 +26,7 @@ from robot_bridge.gateway.storage.singleton_lock import (
 )
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_server import add_accounts
-from tests.support.patience import START
+from tests.support.patience import START, until
 
 HOLDER = """
 import asyncio, sys
@@ -124,6 +124,37 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
         await SingletonLock(address).acquire()
     assert not hold.done()
     assert "its lock is taken anew as soon as it is back" in caplog.text
+    hold.cancel()
+    await gateway.release()
+
+
+@pytest.mark.parametrize("kind", ["mariadb"])
+async def test_a_limit_of_idle_transactions_does_not_cut_the_lock(address, server):
+    """Else another gateway could take the database every few seconds."""
+    server.sql("set global idle_transaction_timeout = 1, global idle_write_transaction_timeout = 1")
+    try:
+        lock = singleton_lock.ServerLock(address)
+        assert lock.acquire()
+        limits = "@@idle_transaction_timeout + @@idle_write_transaction_timeout + "
+        limits += "@@idle_readonly_transaction_timeout"
+        assert lock._connection.execute(text(f"select {limits}")).scalar_one() == 0
+        lock.release()
+    finally:
+        server.sql("set global idle_transaction_timeout = 0, global idle_write_transaction_timeout = 0")
+
+
+@pytest.mark.parametrize("kind", ["postgresql"])
+async def test_a_lock_that_is_cut_again_and_again_is_said_once(address, often, caplog, monkeypatch):
+    gateway, cuts = SingletonLock(address), []
+
+    def cut():
+        cuts.append(None)
+        raise StoreError("the lock was cut")
+
+    monkeypatch.setattr(gateway._lock, "ping", cut)
+    hold = await holding(gateway)
+    await until(lambda: len(cuts) > 2)
+    assert caplog.text.count("the lock was cut") == 1
     hold.cancel()
     await gateway.release()
 

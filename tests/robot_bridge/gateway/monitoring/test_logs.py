@@ -29,6 +29,14 @@ def test_json_lines_hold_time_level_logger_and_text(root_log):
     assert entry == {"level": "info", "logger": "robot_bridge.test", "message": "robot 'r1' said\nwhat č"}
 
 
+def test_what_a_driver_raises_as_well_is_no_line(root_log):
+    """psycopg warns of each failure of many statements: once a second for as long as a right is missing."""
+    stream = io.StringIO()
+    set_up_log(stream=stream)
+    logging.getLogger("psycopg").warning("error ignored terminating pipeline: pipeline aborted")
+    assert stream.getvalue() == ""
+
+
 def test_an_exception_is_part_of_its_line(root_log):
     stream = io.StringIO()
     set_up_log("json", stream=stream)

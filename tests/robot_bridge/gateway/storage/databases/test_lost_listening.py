@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import uvloop
 
+from robot_bridge.gateway.storage import wakeups
 from robot_bridge.gateway.storage.database import Database
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_client import DatabaseClient
@@ -63,3 +64,41 @@ async def answers_while_sessions_end(url: str) -> list[bytes]:
 def test_whoever_comes_while_sessions_end_is_heard(url, loop: str) -> None:
     with asyncio.Runner(loop_factory=LOOPS[loop]) as runner:
         assert runner.run(answers_while_sessions_end(url)) == [b"!"] * CLIENTS
+
+
+@pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+async def test_an_administrators_limit_of_idle_sessions_ends_no_connection_of_a_gateway(url):
+    """Else its listener would be cut every few seconds, and robots be heard once a second."""
+    database, client = Database(url), DatabaseClient(url)
+    client.sql(f'alter database "{database.url.database}" set idle_session_timeout = 10000')
+    wakeup = database.wakeup("sa_r1")
+    try:
+        with await asyncio.to_thread(wakeup._connect) as listener:
+            limits = [
+                listener.execute("show idle_session_timeout").fetchone()[0],
+                await database.read(lambda one: one.exec_driver_sql("show idle_session_timeout").scalar()),
+            ]
+    finally:
+        client.sql(f'alter database "{database.url.database}" reset idle_session_timeout')
+        client.close()
+        await database.close()
+    assert limits == ["0", "0"]
+
+
+async def test_a_listener_that_is_cut_again_and_again_is_said_once(monkeypatch, caplog):
+    monkeypatch.setattr(wakeups, "RETRY_AFTER_S", 0.0)
+    monkeypatch.setattr(wakeups, "FALLBACK_S", 0.0)
+    wakeup, tried = Database("postgresql://fleet@127.0.0.1:1/fleet").wakeup("sa_r1"), []
+
+    def refused():
+        tried.append(None)
+        raise OSError("no connection is left" if len(tried) < 4 else "the server is gone")
+
+    monkeypatch.setattr(wakeup, "_connect", refused)
+    await wakeup.wait(found=False)
+    await until(lambda: len(tried) > 8)
+    await wakeup.close()
+    assert [record.getMessage().rpartition(": ")[2] for record in caplog.records] == [
+        "no connection is left",
+        "the server is gone",
+    ]

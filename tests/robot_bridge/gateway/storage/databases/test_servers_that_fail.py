@@ -63,6 +63,20 @@ async def test_one_without_a_connection_to_spare_is_named_as_that(url, database)
     await other.close()
 
 
+@pytest.mark.parametrize("kind", ["mariadb"], indirect=True)
+async def test_a_mariadb_without_a_connection_to_spare_is_named_as_that(url, server):
+    server.sql("set global max_connections = 10")
+    others = [Database(url, patience=1.0) for _ in range(11)]
+    try:
+        with pytest.raises(StoreError, match=r"Too many connections; raise max_connections"):
+            for one in others:
+                await one.run(names)
+    finally:
+        for one in others:
+            await one.close()
+        server.sql("set global max_connections = default")
+
+
 async def test_one_that_is_given_no_password_says_where_to_give_it(monkeypatch):
     monkeypatch.delenv("PGPASSWORD", raising=False)
     monkeypatch.setenv("PGPASSFILE", "/nowhere")
