@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
-from sqlalchemy.exc import ProgrammingError
+from sqlalchemy.exc import OperationalError, ProgrammingError
 
 from ...core.errors import RefusedError, StoreError, UncertainError
 from ...core.logs import log_and_continue
@@ -62,6 +62,8 @@ FORGOTTEN = ("Start", "OpAck", "SetMap")
 """Messages that are void when their robot restarts."""
 Also = Callable[[Connection], None]
 """Further writes in the same transaction."""
+_NO_RIGHT = 1142
+"""MariaDB's code for a missing right, which its driver does not class as PostgreSQL's does."""
 AlsoOf = Callable[[str], Also]
 """Makes the further writes from the id of the command that the robot then carries out."""
 
@@ -215,15 +217,30 @@ def write_driven(connection: Connection, driven: Mapping[str, float]) -> None:
 def write_bare_aborts(
     connection: Connection, robots: Sequence[str], withdrawn: Sequence[str], *, emergency: bool
 ) -> None:
-    """Write Aborts that belong to no command, in place of operations ``withdrawn``: SA alone is needed."""
-    try:
-        with connection.begin_nested():
-            answers.remove_unlocked(connection, robots, withdrawn)
-    except ProgrammingError as error:
-        # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
-        log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
-        answers.remove_kinds(connection, robots, withdrawn)
-    answers.add_answers(connection, [(robot, Abort(emergency=emergency)) for robot in robots])
+    """Write Aborts that belong to no command, in place of operations ``withdrawn``: SA alone is needed.
+
+    The Abort of an emergency is read before operations that cannot be withdrawn, so that another one is
+    written behind them.
+    """
+    aborts = [Abort(emergency=emergency)]
+    if not _withdraw_unlocked(connection, robots, withdrawn) and emergency:
+        aborts.append(Abort())
+    answers.add_answers(connection, [(robot, abort) for robot in robots for abort in aborts])
+
+
+def _withdraw_unlocked(connection: Connection, robots: Sequence[str], kinds: Sequence[str]) -> bool:
+    """Remove messages of ``kinds`` for ``robots``; return false where this account has no right to that."""
+    # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
+    for remove in (answers.remove_unlocked, answers.remove_kinds):
+        try:
+            with connection.begin_nested():
+                remove(connection, robots, kinds)
+            return True
+        except (ProgrammingError, OperationalError) as error:
+            if isinstance(error, OperationalError) and getattr(error.orig, "args", ())[:1] != (_NO_RIGHT,):
+                raise
+            log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
+    return False
 
 
 def opened(stored: StoredCommand, message: Command | None = None) -> ActiveCommand:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import time
+from functools import partial
 
 import pytest
 from sqlalchemy import event, insert, select
 
 from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.gateway.commands.persistence import write_bare_aborts
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.schema import rr
 from tests.support.databases.database_client import DatabaseClient
@@ -129,6 +131,36 @@ async def test_a_row_that_an_administrators_trigger_refuses_is_refused_as_data(u
     if kind == "postgresql":
         client.sql("drop function out_of_service")
     client.close()
+
+
+NO_DELETION = {
+    "postgresql": (
+        "create function kept() returns trigger language plpgsql as "
+        "$$ begin raise insufficient_privilege; end $$",
+        "create trigger kept before delete on sa for each row execute function kept()",
+    ),
+    "mariadb": (
+        "create trigger kept before delete on sa for each row "
+        "signal sqlstate '42000' set mysql_errno = 1142, message_text = 'command denied'",
+    ),
+}
+
+
+@SERVERS
+async def test_an_abort_is_written_where_nothing_can_be_withdrawn(url, kind, database):
+    """Read first, it stops the robot; the one behind what waits stops it once more."""
+    client = DatabaseClient(url)
+    client.sql("insert into sa (robot, op, params) values ('r1', 'SetPosEnd', '{}')")
+    for statement in NO_DELETION[kind]:
+        client.sql(statement)
+    writing = partial(write_bare_aborts, robots=["r1"], withdrawn=["SetPosEnd"], emergency=True)
+    await database.run(writing)
+    found = client.sql("select op from sa where robot = 'r1' order by urgent desc, id")
+    client.sql("drop trigger kept" + (" on sa" if kind == "postgresql" else ""))
+    if kind == "postgresql":
+        client.sql("drop function kept")
+    client.close()
+    assert [op for (op,) in found] == ["Abort", "SetPosEnd", "Abort"]
 
 
 @pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
