@@ -20,7 +20,14 @@ from typing import Any
 
 from sqlalchemy import URL, Connection, select
 
-from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
+from ...core.errors import (
+    BridgeError,
+    DataRefusedError,
+    LockedError,
+    StoreError,
+    UncertainError,
+    listed_names,
+)
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
@@ -300,13 +307,17 @@ class AbortJournal(JournalFile):
 # --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---
 # All in one transaction where possible. Else every robot is first sent a bare Abort, which belongs to no
 # command: inserts into one table, over a second connection, which wait for no lock. Then the robots are
-# halved until the failing ones are found: each group is a transaction of its own.
+# halved until the failing ones are found: each group is a transaction of its own. Of a table that takes
+# nothing a few robots show that it is none of theirs.
 
 MOTIONS = (SetPosEnd, SetPath)
 HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
 BARE_AFTER_S = 1.0
 """seconds after which robots that only read the database are sent a bare Abort of a stop that is not stored
 yet: somebody may have a table locked that they do not read."""
+
+MOST_ALIKE = 8
+"""robots that fail by themselves, one after the other and in the same way, before others are not tried."""
 
 
 class StopWriter:
@@ -316,6 +327,8 @@ class StopWriter:
         self._commands = commands
         self._database = database
         self._news = TroubleNews()
+        self._failed_alone: set[str] = set()
+        """robots that failed by themselves when they were tried last."""
         self._owed: dict[str, StopRow] = {}
         self._have_bare: dict[str, set[str]] = {}
         """robots that were sent bare Aborts, with the ids of the stops."""
@@ -447,24 +460,49 @@ class StopWriter:
     ) -> dict[str, Exception]:
         """Write for all ``robots`` at once, else half by half; return the failed robots with their errors.
 
-        ``run`` is that of the connection which ``write`` uses.
+        ``run`` is that of the connection which ``write`` uses. Where :data:`MOST_ALIKE` robots fail in the
+        same way a table is at fault and no robot: others are not tried by themselves then, and come first in
+        the next call.
 
         :raises StoreError: when it failed because the database cannot be used.
         """
-        if not robots:
-            return {}
-        try:
-            await write(robots)
-            return {}
-        except Exception as error:
-            await run(_use)
-            if len(robots) == 1:
-                if self._news.has(robots[0], str(error)):
-                    _explain(error, f"the Abort of robot {robots[0]!r} cannot be stored")
-                return {robots[0]: error}
-        half = len(robots) // 2
-        first, second = robots[:half], robots[half:]
-        return {**await self._halve(first, write, run), **await self._halve(second, write, run)}
+        alike: list[str] = []
+
+        async def search(some: Sequence[str]) -> dict[str, Exception]:
+            try:
+                await write(some)
+                alike.clear()
+                return {}
+            except Exception as error:
+                await run(_use)
+                text = str(error)
+                if len(some) == 1:
+                    self._failed_alone.add(some[0])
+                    if alike and alike[-1] != text:
+                        alike.clear()
+                    alike.append(text)
+                    return {some[0]: error}
+                # Of one robot's data, or fence, another one's error says nothing.
+                if type(error) in (StoreError, LockedError) and alike[-MOST_ALIKE:] == [text] * MOST_ALIKE:
+                    return dict.fromkeys(some, error)
+            half = len(some) // 2
+            return {**await search(some[:half]), **await search(some[half:])}
+
+        in_order = sorted(robots, key=self._failed_alone.__contains__)
+        self._failed_alone.difference_update(robots)
+        failed = await search(in_order) if in_order else {}
+        self._log_failed(failed)
+        return failed
+
+    def _log_failed(self, failed: dict[str, Exception]) -> None:
+        """Log errors of robots, the same one of several together."""
+        robots: dict[str, list[str]] = {}
+        for robot, error in sorted(failed.items()):
+            robots.setdefault(str(error), []).append(robot)
+        for text, names in robots.items():
+            what = f"Aborts of {listed_names(names)}" if names[1:] else f"the Abort of robot {names[0]!r}"
+            if self._news.has(what, text):
+                _explain(failed[names[0]], f"{what} cannot be stored")
 
 
 def abort_id(stop: StopRow, robot: str) -> str:

@@ -8,9 +8,9 @@ import logging
 import pytest
 from sqlalchemy.exc import ProgrammingError
 
-from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.core.errors import DataRefusedError, LockedError, StoreError, UncertainError
 from robot_bridge.gateway.fleet import emergency_persistence
-from robot_bridge.gateway.fleet.emergency_persistence import StopWriter, abort_id
+from robot_bridge.gateway.fleet.emergency_persistence import MOST_ALIKE, StopWriter, abort_id
 from robot_bridge.gateway.storage.repositories import emergency_stops
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 
@@ -149,6 +149,44 @@ async def test_a_robot_whose_abort_may_be_stored_later_is_owed_it(storing_on):
     assert not storing_on.writer.is_owing
     await storing_on.writer.write_owed()
     assert storing_on.book.asked == [["r2"]]
+
+
+@pytest.fixture
+async def many(storing_on):
+    names = [f"m{number:02d}" for number in range(40)]
+    for name in names:
+        await storing_on.yard.ready(name)
+    storing_on.writer.owe(STOP, names)
+    return names
+
+
+async def test_where_a_table_takes_nothing_not_each_robot_is_tried_by_itself(storing_on, many, caplog):
+    """Else a fleet of hundreds would be tried for minutes, and nobody could clear the stop meanwhile."""
+    storing_on.book.errors = dict.fromkeys(many, LockedError("commands is locked"))
+    for _ in range(2):
+        storing_on.book.asked.clear()
+        await storing_on.writer.write_owed()
+        assert len(storing_on.book.asked) <= 3 * MOST_ALIKE < len(many)
+    # The second time others were tried, and it is said once of all of them.
+    assert logged(caplog) == [
+        "Aborts of m00, m01, m02, m03, m04, m05, m06, m07, m08, m09 and 30 more cannot be stored: "
+        "commands is locked"
+    ]
+    storing_on.book.errors.clear()
+    storing_on.book.asked.clear()
+    await storing_on.writer.write_owed()
+    assert [sorted(robots) for robots in storing_on.book.asked] == [many]
+    assert not storing_on.writer.is_owing
+
+
+async def test_many_robots_whose_rows_are_locked_keep_no_other_from_its_turn(storing_on, many):
+    locked = [*many[:MOST_ALIKE], *many[MOST_ALIKE + 1 :: 4]]
+    free = [robot for robot in many if robot not in locked]
+    storing_on.book.errors = dict.fromkeys(locked, LockedError("its rows are locked"))
+    for _ in range(3):
+        await storing_on.writer.write_owed()
+    assert [storing_on.aborts(robot)[1] for robot in free] == [1] * len(free)
+    assert [storing_on.aborts(robot)[1] for robot in locked] == [0] * len(locked)
 
 
 async def test_what_drives_is_taken_back_from_each_robot_also_then(storing_on):
