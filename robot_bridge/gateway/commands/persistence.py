@@ -14,8 +14,8 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 from sqlalchemy import Connection
 from sqlalchemy.exc import OperationalError, ProgrammingError
 
-from ...core.errors import RefusedError, StoreError, UncertainError
-from ...core.logs import log_and_continue
+from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from ...core.logs import TroubleNews, log_and_continue
 from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SendPos, SetPosIni
 from ...protocol.codec import decode_answer
@@ -473,6 +473,7 @@ class RobotSequences:
         self._evaluator = evaluator
         self._waiting: dict[str, deque[_Work | SendPos]] = {}
         self._tasks = BackgroundTasks()
+        self._news = TroubleNews()
 
     def add_position(self, robot: str, pose: SendPos) -> bool:
         """Queue a position to be judged after the work in progress; return false if there is none."""
@@ -520,8 +521,9 @@ class RobotSequences:
                 if (work := self._evaluator.evaluate_arrival(robot, pose)) is not None:
                     await work
             except StoreError as error:
-                # Its command is still open, and judged by the next position.
-                log.warning("robot %r: %s", robot, error)
+                # Its command is still open, and judged by the next position, which may come at once.
+                if self._news.has(robot if isinstance(error, DataRefusedError) else "", str(error)):
+                    log.warning("robot %r: %s", robot, error)
 
 
 async def _do(entry: _Work) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection
 
 from ...core.errors import RefusedError, StoreError
-from ...core.logs import log_unforeseen
+from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.base import Done
 from ...core.messages.commands import SendMap
 from ...core.messages.robots import Answer, OpAck, SetMap, Start
@@ -322,6 +322,7 @@ class MapSender:
         self._making = asyncio.Lock()
         self._unplaced: set[str] = set()
         """robots that have such a map, and have not reported their position yet."""
+        self._news = TroubleNews()
 
     async def first(self, robot: str, *, reads_itself: bool) -> tuple[SetMap, bool]:
         """Return the map that ``robot`` is sent after the acknowledgement of its Ready, and whether it is a
@@ -393,7 +394,8 @@ class MapSender:
             try:
                 await self._follow(robot)
             except StoreError as error:
-                log.error("the map for robot %r: %s; trying again in %g s", robot, error, RETRY_AFTER)
+                if self._news.has("map", str(error)):
+                    log.error("the map for robot %r: %s; trying again in %g s", robot, error, RETRY_AFTER)
                 self._outboxes.parts.put_nowait(robot)
                 await asyncio.sleep(RETRY_AFTER)
             except Exception:

@@ -9,8 +9,8 @@ from functools import partial
 
 from sqlalchemy import Connection
 
-from ...core.errors import OutdatedError, RefusedError, StoreError
-from ...core.logs import log_unforeseen
+from ...core.errors import DataRefusedError, OutdatedError, RefusedError, StoreError
+from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.queues import QueueTask, TaskKind, TaskState, check_path
 from ...core.messages.records import PlacementReport
@@ -241,6 +241,7 @@ class QueueRunner:
         self._returned: set[str] = set()
         """robots that are back after a long silence."""
         self._waiting = context.waiting
+        self._news = TroubleNews()
 
     async def run(self) -> None:
         """Run the queues until cancelled."""
@@ -354,10 +355,13 @@ class QueueRunner:
         except OutdatedError:
             self.schedule(robot)
         except StoreError as error:
-            log.error("queue of %s: %s; it is looked at again", robot, error)
-        except Exception:
+            # A database that takes nothing is said of one queue, and not of each every two seconds.
+            if self._news.has(robot if isinstance(error, DataRefusedError) else "", str(error)):
+                log.error("queue of %s: %s; it is looked at again", robot, error)
+        except Exception as error:
             # The queues of all other robots continue.
-            log_unforeseen(log, f"queue of {robot}; it is looked at again")
+            if self._news.has(robot, repr(error)):
+                log_unforeseen(log, f"queue of {robot}; it is looked at again")
 
     def note_return(self, robot: str, away: float) -> None:
         """Record that a robot that was lost or offline for ``away`` seconds is received again."""

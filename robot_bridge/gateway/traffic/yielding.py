@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...core.clock import ClockStep
 from ...core.errors import BridgeError, RefusedError, UncertainError
-from ...core.logs import log_unforeseen
+from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.roads import HoldReport
@@ -256,6 +256,7 @@ class YieldManager:
         self._rows = waiting
         self._doubtful = False
         """whether a robot may be stored as waiting without being known here."""
+        self._news = TroubleNews()
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -354,9 +355,12 @@ class YieldManager:
             try:
                 await self._send_on(row, seen)
             except BridgeError as error:
-                log.warning("robot %s, which waits for %s, is not sent on: %s", row.robot, row.other, error)
-            except Exception:
-                log_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
+                if self._news.has(row.robot, str(error)):
+                    text = "robot %s, which waits for %s, is not sent on: %s"
+                    log.warning(text, row.robot, row.other, error)
+            except Exception as error:
+                if self._news.has(row.robot, repr(error)):
+                    log_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
 
     async def _send_on(self, row: HoldRow, seen: TrafficSnapshot) -> None:
         task = self._commands.busy_with(row.robot)

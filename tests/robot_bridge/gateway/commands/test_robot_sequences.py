@@ -134,3 +134,21 @@ async def test_of_too_many_positions_the_oldest_are_left_out_and_the_robot_was_n
     free.set()
     await idle()
     assert judge.order == ["first", "second", *(("r1", float(x)) for x in range(16, 20))]
+
+
+async def test_positions_that_cannot_be_judged_fill_no_log(sequences, judge, caplog, monkeypatch):
+    """A robot that stands where it should says so ten times a second; each is tried."""
+
+    def locked(robot, pose):
+        return storing(judge, (robot, pose.x), error=StoreError("commands is locked"))
+
+    monkeypatch.setattr(judge, "evaluate_arrival", locked)
+    free = asyncio.Event()
+    for robot in ("r1", "r2"):
+        sequences.add(robot, storing(judge, robot, free))
+        for x in range(5):
+            assert sequences.add_position(robot, at(x))
+    free.set()
+    await idle()
+    assert len(judge.order) == 12
+    assert [record.getMessage() for record in caplog.records] == ["robot 'r1': commands is locked"]

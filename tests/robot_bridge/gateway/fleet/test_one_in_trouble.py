@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 from types import SimpleNamespace
 
@@ -12,7 +13,9 @@ from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.queues import QueueTask, SetQueue
 from robot_bridge.core.messages.robots import SetObject
 from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.gateway.fleet import robot_outboxes
 from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
+from tests.support.patience import until
 
 
 @pytest.fixture
@@ -65,6 +68,25 @@ async def test_a_queue_in_trouble_holds_up_no_other_and_is_looked_at_again(
 
 
 @pytest.mark.parametrize(
+    ("error", "lines"), [(KeyError("nobody foresaw this"), 2), (StoreError("the disk is full"), 1)]
+)
+async def test_queues_in_a_trouble_that_lasts_fill_no_log(two, monkeypatch, caplog, error, lines):
+    """They are looked at every two seconds; a database that takes nothing is said once of all of them."""
+    driving = two.fleet.driving
+
+    async def fail(_queue):
+        raise error
+
+    monkeypatch.setattr(driving._settling, "settle", fail)
+    for robot in ("r1", "r2"):
+        await two.fleet.queues.set(SetQueue(robot, 0, [QueueTask(f"task-{robot}-1", 24.0, 40.0)]), "Ada")
+    for _ in range(3):
+        driving.schedule_all()
+        await driving.advance()
+    assert caplog.text.count("it is looked at again") == lines
+
+
+@pytest.mark.parametrize(
     ("error", "said"),
     [
         (KeyError("nobody foresaw this"), "robot r1, which waits for r2: internal error"),
@@ -86,7 +108,27 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
     monkeypatch.setattr(waiting, "_send_on", send_on)
     await roads.fleet.watch_roads()
     assert sent_on == ["r2"]
-    assert said in caplog.text
+    # It is tried every second, and said once.
+    await roads.fleet.watch_roads()
+    assert sent_on == ["r2", "r2"]
+    assert caplog.text.count(said) == 1
+
+
+async def test_a_map_that_cannot_be_stored_for_long_fills_no_log(two, monkeypatch, caplog):
+    monkeypatch.setattr(robot_outboxes, "RETRY_AFTER", 0.0)
+    tried = []
+
+    async def fail(robot):
+        tried.append(robot)
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr(two.fleet.maps, "_follow", fail)
+    two.fleet.outboxes.parts.put_nowait("r1")
+    running = asyncio.create_task(two.fleet.maps.run())
+    await until(lambda: len(tried) > 3)
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
+    assert caplog.text.count("the map for robot 'r1': the disk is full") == 1
 
 
 async def test_an_observation_that_cannot_be_told_of_is_stored_and_acknowledged(two, caplog):
