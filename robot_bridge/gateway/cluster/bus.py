@@ -186,14 +186,22 @@ class NotifyBus:
     async def _connect(self) -> AsyncConnection[Any]:
         import psycopg
 
+        from ..storage.dialects import ENDLESS
+
         arguments, options = self._arguments()
-        return await psycopg.AsyncConnection.connect(*arguments, **options)
+        connection = await psycopg.AsyncConnection.connect(*arguments, **options)
+        await connection.execute(ENDLESS)
+        return connection
 
     def _connect_for_stops(self) -> Connection[Any]:
         import psycopg
 
+        from ..storage.dialects import ENDLESS
+
         arguments, options = self._arguments()
-        return psycopg.connect(*arguments, **options)
+        connection = psycopg.connect(*arguments, **options)
+        connection.execute(ENDLESS)
+        return connection
 
     def _arguments(self) -> tuple[Any, dict[str, Any]]:
         from ..storage.dialects import CONNECT_ARGUMENTS

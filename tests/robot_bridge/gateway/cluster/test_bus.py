@@ -383,6 +383,24 @@ async def test_a_stop_is_notified_of_while_the_loop_has_no_turn(fleet_url):
     await asyncio.gather(task, return_exceptions=True)
 
 
+async def test_an_administrators_limit_of_idle_sessions_does_not_cut_the_bus(fleet_url):
+    """It listens all day; a stop that is made while it connects again comes by the database, later."""
+    address = read_address(fleet_url)
+    owner = psycopg.connect(fleet_url, autocommit=True)
+    with owner:
+        owner.execute(f'alter database "{address.database}" set idle_session_timeout = 10000')
+        bus = NotifyBus(address, "a")
+        listening, stopping = await bus._connect(), await asyncio.to_thread(bus._connect_for_stops)
+        found = [
+            (await (await listening.execute("show idle_session_timeout")).fetchone())[0],
+            stopping.execute("show idle_session_timeout").fetchone()[0],
+        ]
+        await listening.close()
+        stopping.close()
+        owner.execute(f'alter database "{address.database}" reset idle_session_timeout')
+    assert found == ["0", "0"]
+
+
 async def test_a_bus_ends_while_the_server_hangs(postgresql_server, fleet_url):
     bus = NotifyBus(read_address(fleet_url), "a")
     task = asyncio.create_task(bus.run(lambda *_: None))
