@@ -14,8 +14,8 @@ from typing import Any, Protocol
 from websockets.exceptions import ConnectionClosed
 
 from ...core.clock import steady_time
-from ...core.errors import StoreError
-from ...core.logs import log_and_continue, log_unforeseen
+from ...core.errors import DataRefusedError, StoreError
+from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError, to_json
 from ...core.messages.robots import PAYLOADS, Abort, SetMap
 from ...protocol.codec import parse_params, with_base64
@@ -188,12 +188,22 @@ class Delivery:
             except ConnectionClosed:
                 return
             except StoreError as error:
-                log.error("link %s: robot %r: %s", self._channel.name, self._robot, error)
+                self._log_trouble(error)
                 await asyncio.sleep(RETRY_AFTER)
             except Exception:
                 # Whatever the error: a later stop must still reach this robot.
-                log_unforeseen(log, f"link {self._channel.name}: what waits for robot {self._robot!r}")
+                who = f"link {self._channel.name}: what waits for robot {self._robot!r}"
+                self._fleet.repeated.note_unforeseen(log, (who,), who)
                 await asyncio.sleep(RETRY_AFTER)
+
+    def _log_trouble(self, error: StoreError) -> None:
+        """Log why messages wait, unless that repeats: of all robots together where the database is at fault.
+
+        It is tried again every second, for each robot.
+        """
+        link = f"link {self._channel.name}:"
+        whose = ("robot", repr(self._robot)) if isinstance(error, DataRefusedError) else ("database",)
+        self._fleet.repeated.warn(log, (link, *whose, "outbox"), f"{link} robot {self._robot!r}: {error}")
 
     async def _send_waiting(self, sent: _SentMessages) -> bool:
         """Send the messages that are not in ``sent``; return false when what was read is out of date."""

@@ -11,7 +11,8 @@ import pytest
 from websockets.exceptions import ConnectionClosedOK
 
 from robot_bridge.core.clock import steady_time
-from robot_bridge.core.errors import StoreError
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.logs import IN_FULL, RepeatedLines
 from robot_bridge.gateway.api import delivery, robot_session
 from robot_bridge.gateway.api.delivery import Delivery
 from robot_bridge.gateway.api.robot_session import RobotChannel
@@ -71,6 +72,7 @@ class Fleet:
     def __init__(self):
         self.outboxes = Mailboxes()
         self.maps = self
+        self.repeated = RepeatedLines()
 
     async def whole_or_around(self, robot):
         assert robot == "r1"
@@ -377,6 +379,21 @@ async def test_a_database_that_is_away_is_asked_again(line, caplog, monkeypatch)
     assert [record.getMessage() for record in caplog.records] == [
         "link websocket: robot 'r1': the database is away"
     ] * 2
+
+
+async def test_a_database_that_stays_away_fills_no_log(line, caplog, monkeypatch):
+    """Each robot is tried again every second: a line each time would be thousands in an hour."""
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    line.boxes.fails = 2 * IN_FULL
+    line.delivery.begin()
+    while line.boxes.fails:
+        await rest()
+    assert len(caplog.records) == IN_FULL
+    # What is refused of this robot alone is another trouble.
+    line.boxes.fails, line.boxes.fault = 1, DataRefusedError("refused")
+    line.delivery.begin()
+    await rest()
+    assert caplog.records[-1].getMessage() == "link websocket: robot 'r1': refused"
 
 
 async def test_what_nobody_foresaw_keeps_back_nothing_that_comes_after_it(line, caplog, monkeypatch):
