@@ -104,15 +104,21 @@ LARGE = 100_000
 """bytes of a message above which its frame is built in another thread."""
 PIECE = 3 << 16
 """bytes encoded as base64 at once; a multiple of three, so that pieces can be concatenated."""
+CUT_AGAIN_S = 0.05
+"""seconds until it is looked whether a map that was begun keeps an Abort waiting."""
 ABORT, MAP = Abort.__name__, SetMap.__name__
 
 
 @dataclass
 class _SentMessages:
-    """What a robot was sent on one connection: all up to ``last`` and ``last_urgent``, and later Aborts."""
+    """What a robot was sent on one connection: all up to ``last`` and ``last_urgent``, and later Aborts.
+
+    ``sending`` is the message that was begun last.
+    """
 
     last: int = 0
     last_urgent: int = 0
+    sending: int = 0
     aborts: set[int] = field(default_factory=set)
 
     def record(self, row: AnswerRow) -> None:
@@ -216,25 +222,13 @@ class Delivery:
             is_due = not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
             if self._stops != stops:
                 return False
-            goes_on = True
-            if is_due and (frame := await self._framed(row)) is not None:
-                is_large = len(frame) > LARGE
-                async with self._channel.lane(urgent=row.op == ABORT, large=is_large):
-                    # While this waited for its turn the robot may have been sent a stop.
-                    if self._stops != stops:
-                        return False
-                    if drives and not self._fleet.outboxes.may_send(self._robot, checked_at):
-                        return False
-                    if row.op == ABORT:
-                        await send_stop(self._channel, frame)
-                    elif is_large:
-                        goes_on = await self._send_large(frame, sent)
-                    else:
-                        await self._channel.send(frame)
+            send = self._send_map if row.op == MAP else self._send_row
+            if is_due and not await send(row, stops, checked_at, sent):
+                return False
             sent.record(row)
             if not drives:
                 await self._fleet.outboxes.delivered([row.id])
-            if not goes_on:
+            if row.op == MAP and self._fleet.outboxes.event(self._robot).is_set():
                 return False
         return True
 
@@ -242,28 +236,50 @@ class Delivery:
         rows = await self._fleet.outboxes.outbox(self._robot, sent.last, sent.last_urgent)
         return [row for row in rows if row.id not in sent.aborts]
 
-    async def _send_large(self, frame: str, sent: _SentMessages) -> bool:
-        """Send a large message; return false when the robot has an Abort, which does not wait for its end."""
-        event = self._fleet.outboxes.event(self._robot)
-        sending = asyncio.create_task(self._channel.send(frame))
+    async def _send_row(self, row: AnswerRow, stops: int, checked_at: float, sent: _SentMessages) -> bool:
+        """Send a message in its turn; return false, with nothing sent, when it must not be sent any more.
+
+        :raises ConnectionClosed: when the connection is gone.
+        """
+        if (frame := await self._framed(row)) is None:
+            return True
+        async with self._channel.lane(urgent=row.op == ABORT, large=len(frame) > LARGE):
+            # While this waited for its turn the robot may have been sent a stop.
+            if self._stops != stops:
+                return False
+            if row.op in HELD_BACK and not self._fleet.outboxes.may_send(self._robot, checked_at):
+                return False
+            if row.op == ABORT:
+                await send_stop(self._channel, frame)
+            else:
+                sent.sending = row.id
+                await self._channel.send(frame)
+        return True
+
+    async def _send_map(self, row: AnswerRow, stops: int, checked_at: float, sent: _SentMessages) -> bool:
+        """As :meth:`_send_row`; an Abort waits neither until the map is made, nor for its turn or its end."""
+        event, has_news = self._fleet.outboxes.event(self._robot), False
+        sending = asyncio.create_task(self._send_row(row, stops, checked_at, sent))
         woken = asyncio.create_task(event.wait())
-        has_abort = False
         try:
-            while not (sending.done() or has_abort):
+            while not sending.done():
                 await asyncio.wait((sending, woken), return_when=asyncio.FIRST_COMPLETED)
-                if woken.done():
-                    event.clear()
-                    woken = asyncio.create_task(event.wait())
-                    has_abort = await self._has_abort(sent)
-            if has_abort:
-                await self._channel.cut_if_busy()
-            await sending
+                if not woken.done():
+                    continue
+                event.clear()
+                has_news = True
+                woken = asyncio.create_task(event.wait())
+                while not sending.done() and await self._has_abort(sent):
+                    await self._channel.cut_if_busy()
+                    if sent.sending != row.id:
+                        return False
+                    await asyncio.wait((sending,), timeout=CUT_AGAIN_S)
+            return await sending
         finally:
             woken.cancel()
             sending.cancel()
-            # What else has come is read afterwards.
-            event.set()
-        return not has_abort
+            if has_news:
+                event.set()
 
     async def _has_abort(self, sent: _SentMessages) -> bool:
         try:

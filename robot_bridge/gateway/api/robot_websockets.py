@@ -39,7 +39,7 @@ from ..fleet.service import Fleet
 from ..model.events import GatewaysChanged, RobotLeft
 from ..model.robots import RobotPose
 from ..monitoring import BackgroundTasks
-from .delivery import send_stop, while_connected
+from .delivery import LARGE, send_stop, while_connected
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
 
@@ -53,6 +53,9 @@ ANSWER_WITHIN = 5.0
 """seconds that a link has to answer requests to itself."""
 AT_ONCE = 50
 """connections written to in one iteration of the loop when the gateways of the fleet have changed."""
+AFTER_CUT_S = 2.0
+"""seconds in which a link that was cut for a stop has to say Ready for one robot after another, before large
+messages are sent: behind those a stop would have to cut it again."""
 MOST_CALLS = 20
 """requests to a link that wait for its answer."""
 
@@ -83,6 +86,10 @@ class LinkConnection:
         self._places: dict[str, LinkedRobotChannel] = {}
         self._robots = gate.robots_of_link(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
+        self._large_from = 0.0
+        """time of the loop before which no large message is sent; 0 for at any time."""
+        self.is_cut = False
+        """Whether it was cut for a stop."""
         self._tasks = BackgroundTasks()
         self._numbers = itertools.count(1)
         self._pending_calls: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
@@ -92,6 +99,10 @@ class LinkConnection:
     def sessions(self) -> list[RobotSession]:
         """Return the robots that it speaks for now."""
         return [place.session for place in self._places.values()]
+
+    def delay_large(self) -> None:
+        """Send no large message until a moment after the last robot's first Ready."""
+        self._large_from = asyncio.get_running_loop().time() + AFTER_CUT_S
 
     async def run(self) -> None:
         """Serve the connection to its end."""
@@ -174,6 +185,8 @@ class LinkConnection:
         if urgent:
             yield
         elif large:
+            while (early := self._large_from - asyncio.get_running_loop().time()) > 0:
+                await asyncio.sleep(early)
             async with self._large, self._turn:
                 yield
         else:
@@ -190,7 +203,7 @@ class LinkConnection:
 
     async def cut_if_busy(self) -> None:
         """Wait for the end of a long message, before a stop; cut the connection if that takes too long."""
-        await self._connection.cut_if_busy()
+        self.is_cut |= await self._connection.cut_if_busy()
 
     async def answers(self) -> bool:
         """Return whether the link answers a ping within a second."""
@@ -262,8 +275,9 @@ class LinkConnection:
         )
 
     async def _send_areas(self, id: int | str | None, request: GetAreas) -> None:
-        site = self._fleet.site.site
-        await self.send(await asyncio.to_thread(_areas_reply, id, site, request))
+        reply = await asyncio.to_thread(_areas_reply, id, self._fleet.site.site, request)
+        async with self.lane(urgent=False, large=len(reply) > LARGE):
+            await self.send(reply)
 
     async def _receive_robot_call(self, call: jsonrpc.Call) -> None:
         robot = call.params.get("robot") if isinstance(call.params, dict) else None
@@ -303,6 +317,8 @@ class LinkConnection:
         if len(self._places) >= limits.robots:
             raise BusyError(f"link {self.name} speaks for {limits.robots} robots; there is room for no more")
         place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._holders)
+        if self._large_from:
+            self.delay_large()
         return place
 
     async def _receive_frame(self, frame: bytes) -> None:
@@ -383,6 +399,8 @@ class WebSocketInterface:
         self._names: Counter[str] = Counter()
         self._sessions: set[RobotSession] = set()
         self._links: set[LinkConnection] = set()
+        self._cut_links: set[str] = set()
+        """links whose last connection was cut for a stop."""
         self._holders = RobotSessions(fleet.reception.holds)
         fleet.emergency.reach(self._stop_all)
         fleet.orders.reach(self.abort)
@@ -408,11 +426,14 @@ class WebSocketInterface:
     async def serve_link(self, connection: ClientConnection, gate: AuthGate) -> None:
         """Serve a link to its end. Its robots may drive on: they become lost after the usual times."""
         link = LinkConnection(self._fleet, connection, gate, self._holders)
+        if link.name in self._cut_links:
+            link.delay_large()
         self._links.add(link)
         try:
             await link.run()
         finally:
             self._links.discard(link)
+            (self._cut_links.add if link.is_cut else self._cut_links.discard)(link.name)
             for session in link.sessions():
                 self._holders.release(session)
 

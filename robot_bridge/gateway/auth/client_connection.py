@@ -322,8 +322,8 @@ class ClientConnection(ServerConnection):
             for text in texts:
                 await self.send(text)
 
-    async def cut_if_busy(self) -> None:
-        """Wait for the end of a long message that is being sent, before a stop.
+    async def cut_if_busy(self) -> bool:
+        """Wait for the end of a long message that is being sent, before a stop; return whether it was cut.
 
         Nothing can be sent between its pieces, and on a slow line it takes minutes: after
         :data:`STOP_PATIENCE_S` the connection is cut. The client connects again, and hears the stop first.
@@ -341,9 +341,10 @@ class ClientConnection(ServerConnection):
                     self.address,
                 )
                 self.transport.abort()
-                return
+                return True
             # The line is fast, and this process slow.
             until = self.loop.time() + STOP_PATIENCE_S
+        return False
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, with or without the client's close; further messages are ignored."""

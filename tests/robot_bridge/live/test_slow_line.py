@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 
+from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.settings import SiteSettings
@@ -23,22 +24,20 @@ OVERTAKES = 200_000
 """bytes that a robot may be sent between a stop's request and the stop, with what is on its way already."""
 
 
-class SlowRobot:
-    """A robot that reads as much as a slow line brings; it answers nothing but what :meth:`say` says.
+class SlowClient:
+    """A robot, or a link, that reads as much as a slow line brings, and answers nothing.
 
-    ``received`` counts its bytes, and ``stopped_at`` is that count when an Abort had arrived.
+    ``received`` counts its bytes, ``stopped_at`` is that count when an Abort had arrived, and ``results``
+    counts the results of its calls.
     """
 
-    def __init__(self, bridge, name):
-        self._socket = plain_socket(bridge, f"/robot?robot={name}")
-        self.received = 0
+    def __init__(self, bridge, path):
+        self._socket = plain_socket(bridge, path)
+        self.received = self.results = 0
         self.stopped_at: int | None = None
         self.is_cut = False
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
-
-    def say_ready(self):
-        self.say(method="Ready", params={"magic": 1}, id=1)
 
     def say(self, **call):
         self._socket.sendall(frame(json.dumps({"jsonrpc": "2.0", **call})))
@@ -55,6 +54,7 @@ class SlowRobot:
                 self.received += len(data)
                 if self.stopped_at is None and b'"Abort"' in tail + data:
                     self.stopped_at = self.received
+                self.results += (tail[-8:] + data).count(b'"result"')
                 tail = data[-10:]
                 time.sleep(len(data) / BYTES_PER_S)
         except ConnectionError:
@@ -84,31 +84,48 @@ def bridge(start_bridge, city):
 
 @pytest.fixture
 def connect(bridge):
-    """Connect a slow robot: ``connect(name)``."""
-    robots = []
+    """Connect a slow robot, or a slow link with several: ``connect(*names)``."""
+    clients = []
 
-    def connected(name):
-        robots.append(SlowRobot(bridge, name))
-        robots[-1].say_ready()
-        return robots[-1]
+    def connected(name, *others):
+        is_link = bool(others)
+        clients.append(client := SlowClient(bridge, "/link" if is_link else f"/robot?robot={name}"))
+        if is_link:
+            client.say(method="hello", params={"protocol": LINK_PROTOCOL, "kind": "slow"}, id=0)
+            wait_until(lambda: client.results == 1)
+        for number, robot in enumerate((name, *others), 1):
+            more = {"robot": robot} if is_link else {}
+            client.say(method="Ready", params={"magic": 1, **more}, id=number)
+            # By then the gateway sends the first its map, unless it waits for the others.
+            wait_until(lambda number=number: client.results == number + is_link, 20)
+        return client
 
     yield connected
-    for robot in robots:
-        robot.close()
+    for client in clients:
+        client.close()
 
 
-@pytest.mark.parametrize("asked", ["abort", "emergency_stop"])
-def test_a_stop_does_not_wait_for_the_map_that_a_robot_is_being_sent(bridge, connect, asked):
-    name = f"robot-{asked}"
-    robot, desk = connect(name), bridge.desk()
-    wait_until(lambda: robot.received > 60_000, 20)
-    before = robot.received
-    desk.ask(asked, {} if asked == "emergency_stop" else {"command": "abort-it-1", "robot": name})
-    # The line is too slow for the rest of the map: the robot has to connect again.
-    wait_until(lambda: robot.is_cut, 20)
-    assert robot.stopped_at is None and robot.received < before + OVERTAKES
-    again = connect(name)
+def cuts(bridge):
+    return bridge.gateway_output().count(" from 127.0.0.1 is cut off: a stop would wait")
+
+
+@pytest.mark.parametrize(
+    ("asked", "names"),
+    [("abort", ("alone",)), ("abort", ("one", "other", "stopped")), ("emergency_stop", ("last",))],
+    ids=["abort", "abort of one of a link", "emergency stop"],
+)
+def test_a_stop_does_not_wait_for_the_map_that_a_robot_is_being_sent(bridge, connect, asked, names):
+    cuts_before = cuts(bridge)
+    client, desk, robot = connect(*names), bridge.desk(), names[-1]
+    wait_until(lambda: client.received > 60_000, 20)
+    before = client.received
+    command = {"command": f"abort-{robot}", "robot": robot}
+    desk.ask(asked, {} if asked == "emergency_stop" else command)
+    # The line is too slow for the rest of the map: the client has to connect again.
+    wait_until(lambda: client.is_cut, 20)
+    assert client.stopped_at is None and client.received < before + OVERTAKES
+    again = connect(*names)
     wait_until(lambda: again.stopped_at, 20)
-    assert again.stopped_at < OVERTAKES, "it was sent the map first"
+    assert again.stopped_at < OVERTAKES, "it was sent a map first"
     wait_until(lambda: again.received > OVERTAKES, 20, "the map comes after the stop")
-    assert f"robot {name} from 127.0.0.1 is cut off" in bridge.gateway_output()
+    assert cuts(bridge) == cuts_before + 1

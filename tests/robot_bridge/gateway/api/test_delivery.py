@@ -267,6 +267,33 @@ def failing_once(work):
     return work_or_fail
 
 
+async def test_an_abort_waits_neither_until_a_map_is_made_nor_for_its_turn(line):
+    channel = SharedChannel(line.connection)
+    line.delivery = Delivery(line.fleet, channel, "r1")
+    await line.put(row(1, "SetMap", "{}", b"a window"))
+    line.delivery.begin()
+    await rest()
+    assert channel.asked == [(False, False)] and line.connection.sent == []
+    await line.put(row(2, "Abort", "{}"))
+    assert line.connection.sent == [(2, "Abort")]
+    channel.turn.set()
+    await rest()
+    assert line.connection.sent == [(2, "Abort"), (1, "SetMap")]
+    is_made = asyncio.Event()
+
+    async def make(_robot):
+        await is_made.wait()
+        return b"the whole site"
+
+    line.fleet.whole_or_around = make
+    await line.put(row(3, "SetMap", "{}"))
+    await line.put(row(4, "Abort", "{}"))
+    assert line.connection.sent[2:] == [(4, "Abort")]
+    is_made.set()
+    await rest()
+    assert line.connection.sent[3:] == [(3, "SetMap")]
+
+
 async def test_an_abort_does_not_wait_for_the_end_of_a_map_that_is_being_sent(line, monkeypatch):
     monkeypatch.setattr(robot_session, "FRAME_PIECE", 40)
     monkeypatch.setattr(delivery, "LARGE", 60)

@@ -13,6 +13,7 @@ from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.logs import IN_FULL, RepeatedLines
 from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.api import robot_websockets
 from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
@@ -44,6 +45,7 @@ class Connection:
 
     async def cut_if_busy(self):
         self.sent.append("cut if busy")
+        return False
 
     async def send(self, frame):
         self.sent.append(json.loads(frame))
@@ -255,6 +257,19 @@ async def test_what_goes_wrong_over_a_link_has_a_number_and_ends_no_connection(l
     await link._receive(frame_of([]))
     assert [frame["error"]["code"] for frame in connection.sent] == [jsonrpc.INTERNAL_ERROR] * 2
     assert NUMBER.match(connection.sent[0]["error"]["message"])[1] in NUMBER.findall(caplog.text)
+
+
+async def test_a_link_that_was_cut_for_a_stop_gets_large_messages_after_its_last_robot(link, monkeypatch):
+    """Each robot's Abort is sent when it has said Ready: behind a map it would cut the link again."""
+    monkeypatch.setattr(robot_websockets, "AFTER_CUT_S", 0.2)
+    link.kind, link._gate.limits = "slow", SimpleNamespace(robots=10)
+    link.delay_large()
+    await asyncio.sleep(0.15)
+    robot_came = asyncio.get_running_loop().time()
+    monkeypatch.setattr(robot_websockets, "LinkedRobotChannel", lambda *_: None)
+    link._new_place("r1", admits=True)
+    async with link.lane(urgent=False, large=True):
+        assert asyncio.get_running_loop().time() - robot_came >= 0.2
 
 
 async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(link, connection):
