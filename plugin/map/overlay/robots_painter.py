@@ -82,21 +82,34 @@ def pixels_of(image: QImage) -> Cells:
     return np.frombuffer(bits, dtype=np.uint32).reshape(image.height(), image.width()).copy()
 
 
-def in_a_column(cells: Sequence[Cells]) -> QPixmap:
-    """Return cells of (height, width) pixels as one image, from the top down: contiguous in memory."""
-    width = max(cell.shape[1] for cell in cells)
+BLOCK = 8
+"""Pixels that Qt blends at once, from addresses that are multiples of so many pixels. Those before the first
+and behind the last whole block it blends with masks, which takes several times as long, unless they are
+transparent: with one pixel less than a block on either side of a picture they are, wherever it is painted."""
+
+
+def in_a_column(cells: Sequence[Cells], beside: int = 0) -> QPixmap:
+    """Return cells of (height, width) pixels as one image, from the top down: contiguous in memory.
+
+    ``beside`` transparent pixels are on the left of each, and at least as many on its right.
+    """
+    width = max(cell.shape[1] for cell in cells) + 2 * beside
     column = np.zeros((sum(map(len, cells)), width), dtype=np.uint32)
     for bottom, cell in zip(accumulate(map(len, cells)), cells, strict=True):
-        column[bottom - len(cell) : bottom, : cell.shape[1]] = cell
+        column[bottom - len(cell) : bottom, beside : beside + cell.shape[1]] = cell
     # A copy: the image only refers to the array.
     return QPixmap.fromImage(QImage(column.data, width, len(column), width * 4, FORMAT).copy())
 
 
-def trimmed(cell: Cells) -> tuple[slice, slice]:
-    """Return the lines and the columns of (side, side) pixels that are inked, at least one."""
-    drawn_on = [np.flatnonzero(cell.any(axis=axis)) for axis in (1, 0)]
-    lines, columns = (slice(at[0], at[-1] + 1) if len(at) else slice(0, 1) for at in drawn_on)
-    return lines, columns
+def trimmed(atlas: Cells) -> Rows:
+    """Return (4, n) top, bottom, left and right of what is inked of each of (n, side, side) pixels, at least
+    one pixel."""
+    edges = []
+    for axis in (2, 1):
+        inked = atlas.any(axis=axis)
+        first, last = inked.argmax(axis=1), inked.shape[1] - inked[:, ::-1].argmax(axis=1)
+        edges += [first, np.where(inked.any(axis=1), last, first + 1)]
+    return np.array(edges)
 
 
 HEADINGS = 88
@@ -199,24 +212,27 @@ class Sprites:
     """
 
     def __init__(self, atlases: Sequence[Cells], ratio: float) -> None:
-        cells = [cell for atlas in atlases for cell in atlas]
-        parts = [trimmed(cell) for cell in cells]
-        kept = [cell[part] for cell, part in zip(cells, parts, strict=True)]
-        self._atlas = in_a_column(kept)
+        edges = np.concatenate([trimmed(atlas) for atlas in atlases], axis=1)
+        cells = (cell for atlas in atlases for cell in atlas)
+        kept = [
+            cell[top:bottom, left:right]
+            for cell, (top, bottom, left, right) in zip(cells, edges.T.tolist(), strict=True)
+        ]
+        self._atlas = in_a_column(kept, BLOCK - 1)
         self._ratio = ratio
-        height, width = np.array([cell.shape for cell in kept], dtype=np.float64).T
         self._fragments = Fragments(ratio)
-        across = np.array([columns.start for _, columns in parts]) + width / 2
-        down = np.array([lines.start for lines, _ in parts]) + height / 2
-        bottom = np.cumsum(height)
+        top, bottom, left, right = edges
+        height, width = bottom - top, right - left + 2 * (BLOCK - 1)
         self._cells = np.zeros((len(kept), FIELDS))
         """The fragment's values of each cell; its position is that of the middle of the inked part from
         the left and upper border, in logical pixels."""
-        places = across / ratio, down / ratio, np.zeros(len(kept)), bottom - height, width, height
-        self._cells[:, :6] = np.column_stack(places)
+        middle = (left + right) / 2 / ratio, (top + bottom) / 2 / ratio
+        self._cells[:, :2] = np.column_stack(middle)
+        self._cells[:, 3] = np.cumsum(height) - height
+        self._cells[:, 4:6] = np.column_stack([width, height])
         self._cells[:, 6:8] = self._fragments.scale
         self._cells[:, 9] = 1.0
-        self._half = np.array([len(cell) / 2 for cell in cells])
+        self._half = np.repeat([atlas.shape[1] / 2 for atlas in atlases], [len(atlas) for atlas in atlases])
         """Device pixels from the left and the upper border of each to its middle."""
 
     def paint(

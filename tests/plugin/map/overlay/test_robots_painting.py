@@ -273,3 +273,33 @@ def test_many_are_painted_pixel_for_pixel_like_each_alone(qgis_app, size, ratio)
     painter.end()
     together.setDevicePixelRatio(1.0)
     assert together == alone
+
+
+def test_wherever_a_picture_is_painted_qt_blends_what_is_inked_in_whole_blocks(qgis_app):
+    cells = np.zeros((2, 9, 9), dtype=np.uint32)
+    cells[1, 2:4, 1:8] = 0xFF336699
+    sprites, block = Sprites([cells], 1.0), robots_painter.BLOCK
+    left, top, width, height = sprites._cells[1, 2:6].astype(int).tolist()
+    picture = robots_painter.pixels_of(sprites._atlas.toImage())[top : top + height, left : left + width]
+    assert np.count_nonzero(picture) == 14
+
+    def is_whole(picture):
+        # Whole blocks begin at any of its pixels: it depends on where it is painted.
+        width = picture.shape[1]
+        ends = [(first, first + (width - first) // block * block) for first in range(block)]
+        return not any(picture[:, :first].any() or picture[:, end:].any() for first, end in ends)
+
+    assert is_whole(picture)
+    # No wider than that takes.
+    assert not is_whole(picture[:, 1:]) and not is_whole(picture[:, :-1])
+
+
+def test_what_is_inked_of_a_cell_is_found_up_to_its_edges(qgis_app):
+    cells = np.zeros((4, 5, 5), dtype=np.uint32)
+    cells[0, 1:3, 2:5] = 1
+    cells[1] = 1
+    cells[2, 4, 0] = 1
+    found = robots_painter.trimmed(cells).T.tolist()
+    assert found[:3] == [[1, 3, 2, 5], [0, 5, 0, 5], [4, 5, 0, 1]]
+    # Of one that is empty a pixel is kept.
+    assert found[3] == [0, 1, 0, 1]
