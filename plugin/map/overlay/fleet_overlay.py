@@ -40,7 +40,7 @@ class ScenePainter:
         self._density = DensityPainter(self._labels)
         self.robots = RobotsPainter()
         self._names = NamesPainter()
-        self._borders = BorderHints(self._labels)
+        self._borders = BorderHints()
         self._circles: list = []
         self._viewed: tuple[MapScene, Screen, InView] | None = None
 

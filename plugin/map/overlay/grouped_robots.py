@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, QRectF
-from qgis.PyQt.QtGui import QImage, QPainter, QPixmap, QTransform
+from qgis.PyQt.QtGui import QImage, QPainter, QTransform
 
 from ....robot_bridge.core.messages.positions import Density
 from ....robot_bridge.core.messages.safety import RobotState
@@ -17,7 +18,7 @@ from ...gateway_client.robot_states import STATES, UNSURE
 from ...layers.site_transform import SiteToMapTransform
 from ...ui.glyphs import PAPER, SELECTED, STATE_COLOURS, draw_arrow
 from ...ui.language import tr_count
-from .labels import Labels
+from .labels import Labels, TextAtlas, WrittenText
 from .robots_painter import FORMAT, Cells, Sprites, cell, turned
 from .scene import InView, MapScene, Screen
 
@@ -85,20 +86,35 @@ def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
     return [Hint(*given) for given in zip(x.tolist(), y.tolist(), turns.tolist(), groups, strict=True)]
 
 
+class BorderText(NamedTuple):
+    """The name of an arrow's robot, or the number of its robots, and its edges in logical pixels."""
+
+    text: str
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+
 class BorderHints:
     """Finds the arrows a few times per second, and paints them from an atlas."""
 
-    def __init__(self, labels: Labels) -> None:
-        self._labels = labels
-        self._atlases: dict[tuple[int, bool], Sprites] = {}
-        self._ratio = 0.0
+    def __init__(self) -> None:
+        self._written = TextAtlas(1.0)
+        self._drawings: dict[tuple[int, bool], Cells] = {}
+        """The arrows of each state, to selected robots and to others; in the order of :attr:`_sprites`."""
+        self._sprites: Sprites | None = None
         self._found_for: tuple[Screen, list[str]] | None = None
         self._found_at = -np.inf
         self.hints: list[Hint] = []
         self._chosen: tuple[str, ...] | None = None
         """The selection for which the painting was prepared; None when it must be prepared again."""
-        self._arrows: list[tuple[Sprites, Points, Rows]] = []
-        self._texts: list[tuple[QPointF, QPixmap]] = []
+        self._arrows: tuple[Points, Rows] = np.empty((0, 2)), np.empty(0, dtype=np.intp)
+        """(n, 2) places of the arrows, and their cells."""
+        self.texts: list[BorderText] = []
+        """The texts beside the arrows."""
+        self._corners, self._parts = np.empty((0, 2)), np.empty((0, 6))
+        """The same for each of their parts, as :meth:`TextAtlas.paint` takes them."""
 
     def find(self, placed: MapScene, view: InView, screen: Screen) -> bool:
         """Find the arrows for robots out of view, unless that was just done; return whether it was done."""
@@ -114,30 +130,39 @@ class BorderHints:
 
     def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
         """Paint each arrow in its robots' colour, with their name or number."""
+        if not self.hints:
+            self.texts = []
+            return
         if self._chosen != placed.scene.chosen:
             self._chosen = placed.scene.chosen
-            self._arrows, self._texts = self._made(placed, screen) if self.hints else ([], [])
-        for arrow, at, cells in self._arrows:
-            arrow.paint(painter, at, cells)
-        for place, text in self._texts:
-            painter.drawPixmap(place, text)
+            self._arrange(placed, screen)
+        self._sprites.paint(painter, *self._arrows)
+        self._written.paint(painter, self._corners, self._parts)
 
-    def _made(
-        self, placed: MapScene, screen: Screen
-    ) -> tuple[list[tuple[Sprites, Points, Rows]], list[tuple[QPointF, QPixmap]]]:
-        """Return the arrows as returned by :meth:`_coloured`, and the texts with their positions."""
+    def _arrange(self, placed: MapScene, screen: Screen) -> None:
+        """Prepare the painting of the arrows and of their texts."""
+        if screen.ratio != self._written.ratio:
+            self._written = TextAtlas(screen.ratio)
+            self._drawings.clear()
         rows = np.concatenate([hint.rows for hint in self.hints])
         first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
+        self._arrows = self._coloured(placed, rows, first, screen)
         ranks = np.maximum.reduceat(_ranks(placed)[rows], first)
+        pressing = [self.hints[k] for k in np.argsort(-ranks, kind="stable").tolist()]
         names = placed.scene.robots.names
-        pressing = np.argsort(-ranks, kind="stable").tolist()
-        texts = [_beside(self._labels, self.hints[k], names, screen) for k in pressing]
-        return self._coloured(placed, rows, first, screen), _apart(texts, screen.ratio)
+        texts = [names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows)) for hint in pressing]
+        self._written.provide(texts, shown=[texts])
+        written = map(self._written.written, texts)
+        beside = [_beside(*each, screen) for each in zip(texts, written, pressing, strict=True)]
+        self.texts = _apart(beside)
+        shown = [(text, self._written.written(text.text).parts) for text in self.texts]
+        corners = [(text.left, text.top) for text, parts in shown for _ in parts]
+        self._corners = np.array(corners, dtype=np.float64).reshape(-1, 2)
+        parts = [part for _, parts in shown for part in parts]
+        self._parts = np.array(parts, dtype=np.float64).reshape(-1, 6)
 
-    def _coloured(
-        self, placed: MapScene, rows: Rows, first: Rows, screen: Screen
-    ) -> list[tuple[Sprites, Points, Rows]]:
-        """Return for each colour the arrow, its positions, and its cells.
+    def _coloured(self, placed: MapScene, rows: Rows, first: Rows, screen: Screen) -> tuple[Points, Rows]:
+        """Return the places of the arrows and their cells, those of one colour after those of another.
 
         ``rows`` are the robots of all hints, and ``first`` the index where those of each hint begin.
         """
@@ -148,21 +173,22 @@ class BorderHints:
         is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
         cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        colours = [*zip(states.tolist(), is_chosen.tolist(), strict=True)]
+        self._provide(set(colours), screen.ratio)
+        places = {drawing: place for place, drawing in enumerate(self._drawings)}
+        cells += ARROW_TURNS * np.array([places[colour] for colour in colours])
         at = np.array([(hint.x, hint.y) for hint in self.hints])
-        found = []
-        for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
-            those = np.flatnonzero((states == state) & (is_chosen == to_chosen))
-            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], cells[those]))
-        return found
+        order = sorted(range(len(colours)), key=colours.__getitem__)
+        return at[order], cells[order]
 
-    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
-        """Return the arrow to robots in a state, created on first use."""
-        if ratio != self._ratio:
-            self._atlases.clear()
-            self._ratio = ratio
-        if (state, to_chosen) not in self._atlases:
-            self._atlases[state, to_chosen] = Sprites([arrow_atlas(ratio, STATES[state], to_chosen)], ratio)
-        return self._atlases[state, to_chosen]
+    def _provide(self, drawings: set[tuple[int, bool]], ratio: float) -> None:
+        """Have the arrows of a state, to selected robots or to others, drawn on first use."""
+        missing = drawings - self._drawings.keys()
+        if not missing:
+            return
+        for state, to_chosen in sorted(missing):
+            self._drawings[state, to_chosen] = arrow_atlas(ratio, STATES[state], to_chosen)
+        self._sprites = Sprites([*self._drawings.values()], ratio)
 
 
 def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
@@ -173,10 +199,10 @@ def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
     return ranks
 
 
-def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPointF, QPixmap]]:
+def _apart(texts: list[BorderText]) -> list[BorderText]:
     """Remove texts that overlap an earlier one; the arrow stays, and a click on it shows its robots."""
-    first = np.array([(place.x(), place.y()) for place, _ in texts]).reshape(-1, 2)
-    last = first + np.array([(text.width(), text.height()) for _, text in texts]).reshape(-1, 2) / ratio
+    boxes = np.array([text[1:] for text in texts]).reshape(-1, 4)
+    first, last = boxes[:, :2], boxes[:, 2:]
     overlaps = ((first[:, None] < last) & (first < last[:, None])).all(axis=2)
     shown, covered = [], np.zeros(len(texts), dtype=np.bool_)
     for text, is_covered, over in zip(texts, covered, overlaps, strict=True):
@@ -186,17 +212,14 @@ def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPo
     return shown
 
 
-def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
-    """Return the robot's name, or the number of robots, and its place, fully visible inside of the arrow."""
-    text = names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
-    picture = labels.picture(text, screen.ratio)
-    width, height = picture.width() / screen.ratio, picture.height() / screen.ratio
-    inward = 8.0 + math.hypot(width, height) / 2
-    x = hint.x - math.cos(hint.turn) * inward - width / 2
-    y = hint.y - math.sin(hint.turn) * inward - height / 2
-    x = min(max(x, 0.0), screen.width - width)
-    y = min(max(y, 0.0), screen.height - height)
-    return QPointF(x, y), picture
+def _beside(text: str, written: WrittenText, hint: Hint, screen: Screen) -> BorderText:
+    """Return the place of the ``text`` of an arrow, fully visible inside of that."""
+    inward = 8.0 + math.hypot(written.width, written.height) / 2
+    x = hint.x - math.cos(hint.turn) * inward - written.width / 2
+    y = hint.y - math.sin(hint.turn) * inward - written.height / 2
+    x = min(max(x, 0.0), screen.width - written.width)
+    y = min(max(y, 0.0), screen.height - written.height)
+    return BorderText(text, x, y, x + written.width, y + written.height)
 
 
 # --- Robots that are too many to be drawn one by one: cells shaded by their number of robots ---

@@ -50,15 +50,17 @@ def test_pictures_of_names_have_an_end_though_ten_thousand_robots_come_and_go(pa
     made, heights = [], []
     for number in range(200):
         kept = painted(crowd(50 * number, 100.0 + number))
-        made.append(len(kept._names._atlas._texts))
-        heights.append(kept._names._atlas._picture.height())
+        atlases = kept._names._atlas, kept._borders._written
+        made += [len(atlas._texts) for atlas in atlases]
+        heights += [atlas._picture.height() for atlas in atlases]
     assert max(made) <= 2 * MOST_LINES
     assert max(heights) <= MOST_LINES * HEIGHT
     assert "robot 0" not in kept._names._atlas
     assert any(text.startswith("robot 99") for text in kept._names._atlas._texts), "the newest are there"
     assert len(kept._names._parts) < 200 and len(kept._names._waiting) <= 50
     assert len(kept._labels._pictures) <= MOST
-    assert len(kept._borders._atlases) <= 2 * len(STATES)
+    assert 0 < len(kept._borders._drawings) <= 2 * len(STATES)
+    assert len(kept._borders._written._texts) > 0
 
 
 def test_drawings_are_kept_of_one_magnification_only(painted):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
-from qgis.PyQt.QtCore import QRectF, QSizeF
+from qgis.PyQt.QtCore import QPointF, QRectF
 
 NAMES = [f"street-sweeper-{k}" for k in range(8)]
 """So long that beside arrows next to one another there is no room for all."""
@@ -22,15 +22,17 @@ def beyond(at_desk, gateway, make_robot, iface, wait):
     return at_desk
 
 
+def texts(window):
+    return window.view.overlay._painter._borders.texts
+
+
 def areas(window):
-    return [QRectF(at, QSizeF(text.size())) for at, text in window.view.overlay._painter._borders._texts]
+    return [QRectF(QPointF(*text[1:3]), QPointF(*text[3:])) for text in texts(window)]
 
 
 def is_named(window, name):
     """Tell whether the robot's name stands beside its arrow."""
-    painter = window.view.overlay._painter
-    label = painter._labels.picture(name, 1.0).cacheKey()
-    return any(text.cacheKey() == label for _, text in painter._borders._texts)
+    return any(text.text == name for text in texts(window))
 
 
 def test_no_name_lies_over_another(beyond, wait):
