@@ -15,7 +15,7 @@ from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.link_supervision import SUSPEND_INTERVAL
 from .fleet.service import Fleet
 from .model.events import Answering, ClosuresChanged, PlanChanged, SiteChosen
-from .monitoring import Counters, Work, every, wait_at_most
+from .monitoring import Counters, Work, every, until_tick, wait_at_most
 from .storage.database import Database
 
 BEAT_INTERVAL_S = 1.0
@@ -111,7 +111,7 @@ class ClusterRelays:
         """Send heartbeats to other gateways, independent of all other work."""
         while True:
             self._numbers.send_beat()
-            await asyncio.sleep(BEAT_INTERVAL_S)
+            await asyncio.sleep(until_tick(BEAT_INTERVAL_S))
 
     async def _suspend(self) -> None:
         """Read the suspended accounts, and update them while this gateway leads."""
@@ -133,7 +133,7 @@ class ClusterRelays:
             self._owners_changed.clear()
             await takeover.claim_left()
             await takeover.follow()
-            await wait_at_most(self._owners_changed, OWNERS_INTERVAL_S)
+            await wait_at_most(self._owners_changed, until_tick(OWNERS_INTERVAL_S))
 
     def _woken(self, wake: Wake) -> None:
         if wake.what == "owners":
@@ -148,11 +148,11 @@ class ClusterRelays:
                 while not membership.leads:
                     # Work done by another gateway counts as done.
                     counters.beat(name)
-                    await asyncio.sleep(LEADER_LOOK_S)
+                    await asyncio.sleep(until_tick(LEADER_LOOK_S))
                 task = asyncio.ensure_future(work())
                 try:
                     while membership.leads and not task.done():
-                        await asyncio.wait({task}, timeout=LEADER_LOOK_S)
+                        await asyncio.wait({task}, timeout=until_tick(LEADER_LOOK_S))
                     if task.done():
                         return task.result()
                 finally:

@@ -301,11 +301,37 @@ async def wait_at_most(event: asyncio.Event, seconds: float) -> None:
 
 
 async def every(seconds: float, work: Work, name: str, counters: Counters) -> None:
-    """Run ``work`` every so many seconds forever, each success recorded as a beat of ``name``."""
+    """Run ``work`` every so many seconds forever, each success recorded as a beat of ``name``.
+
+    Works have their turns at common ticks: see :func:`until_tick`.
+    """
     while True:
-        await asyncio.sleep(seconds)
+        await asyncio.sleep(until_tick(seconds))
         await work()
         counters.beat(name)
+
+
+# --- Ticks: all that is done at intervals wakes the process at the same moments
+
+TICK_S = 0.25
+_TICKS_SINCE = time.monotonic()
+"""Ticks are counted from here, so that gateways on one computer do not all wake at the same moment."""
+_ROUNDING_S = 0.002
+"""An event loop may wake a millisecond early: that tick counts as over."""
+
+
+def until_tick(seconds: float) -> float:
+    """Return the time until the last tick that is at most ``seconds`` away.
+
+    Of a process with little to do most of the processor time goes into waking up: what is done at intervals
+    is done together. Work that takes long rests for half its interval all the same. Less than a tick is
+    returned as it is.
+    """
+    if seconds < TICK_S:
+        return seconds
+    now = time.monotonic() - _TICKS_SINCE
+    tick = math.floor((now + seconds + _ROUNDING_S) / TICK_S) * TICK_S
+    return tick - now if tick - now >= seconds / 2 else tick - now + TICK_S
 
 
 # --- Garbage collection of reference cycles: rare, since all work waits meanwhile

@@ -23,7 +23,7 @@ from ..core.sites.site import Site, frame_mismatch, publish_staged, read_site, s
 from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
 from .fleet.service import Fleet
 from .model.events import SiteChosen, handles
-from .monitoring import wait_at_most
+from .monitoring import until_tick, wait_at_most
 from .site.site_maps import SiteMaps
 from .storage.dialects import CONNECT_ARGUMENTS, PostgreSQL
 from .storage.repositories import metadata
@@ -317,7 +317,7 @@ class SiteWatch:
     async def run(self) -> None:
         """Adopt publications, until cancelled."""
         while True:
-            await wait_at_most(self._reload, LOOK_INTERVAL)
+            await wait_at_most(self._reload, until_tick(LOOK_INTERVAL))
             await self.refresh(requested=self._reload.is_set())
 
     async def refresh(self, *, requested: bool = False) -> None:

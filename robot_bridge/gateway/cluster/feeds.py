@@ -30,7 +30,7 @@ from ..model.events import (
 )
 from ..model.robots import Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
-from ..monitoring import wait_at_most
+from ..monitoring import TICK_S, until_tick, wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, queues, records
 from .bus import EVERYBODY, own_subject
@@ -360,14 +360,14 @@ class QueueFeed:
         loop, looked_at = asyncio.get_running_loop(), 0.0
         try:
             while True:
-                if loop.time() - looked_at >= LOOK_S:
+                if loop.time() - looked_at >= LOOK_S - TICK_S:
                     if self._must_look or self._schedule.is_due:
                         await self._find_changes()
                     self._name_changed_robots()
                     looked_at = loop.time()
                 self._is_named.clear()
                 await self._announce_named()
-                await wait_at_most(self._is_named, LOOK_S)
+                await wait_at_most(self._is_named, until_tick(LOOK_S))
                 await asyncio.sleep(TELL_S)
         finally:
             telling.cancel()

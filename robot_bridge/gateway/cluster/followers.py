@@ -13,7 +13,7 @@ import secrets
 from collections.abc import Mapping
 from typing import Protocol
 
-from ..monitoring import wait_at_most
+from ..monitoring import until_tick, wait_at_most
 from .bus import EVERYBODY
 from .membership import Membership
 from .messages import Beat, Exchange, Wake, WakeTopic
@@ -144,7 +144,7 @@ class Follower:
 
     async def _wait_until_due(self) -> None:
         while not self._woken.is_set():
-            await wait_at_most(self._woken, LOOK_S)
+            await wait_at_most(self._woken, until_tick(LOOK_S))
             if self._schedule.is_due or self._followed.goes_on:
                 return
 

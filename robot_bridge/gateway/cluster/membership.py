@@ -18,7 +18,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import BridgeError, FatalError, StoreError
-from ..monitoring import gateway_version
+from ..monitoring import gateway_version, until_tick
 from ..storage.database import Database
 from ..storage.repositories import gateways
 from ..storage.repositories.gateways import Claimed, Member, MembersRead
@@ -345,7 +345,7 @@ class Membership:
         """Renew the lease until cancelled; raises FatalError as :meth:`renew`."""
         said = ""
         while True:
-            await asyncio.sleep(RENEW_S)
+            await asyncio.sleep(until_tick(RENEW_S))
             try:
                 await self.renew()
                 said = ""

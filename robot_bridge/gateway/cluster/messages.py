@@ -28,6 +28,7 @@ from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, StopOutcome
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
+from ..monitoring import until_tick
 from .bus import EVERYBODY, RIGHTS_PROBE, STOP, Bus, NoBus, own_subject
 from .membership import Membership
 
@@ -521,7 +522,7 @@ class Exchange:
 
     async def _count_repeated(self) -> None:
         while True:
-            await asyncio.sleep(COUNT_S)
+            await asyncio.sleep(until_tick(COUNT_S))
             self._repeated.summarise()
 
     def _is_copy(self, signature: bytes) -> bool:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from ...core.errors import BridgeError
 from ...core.logs import log_and_continue, log_unforeseen
-from ..monitoring import wait_at_most
+from ..monitoring import until_tick, wait_at_most
 from .bus import (
     EVERYBODY,
     MOST_WAITING,
@@ -29,9 +29,9 @@ log = logging.getLogger(__name__)
 
 NATS_RETRY_S = 0.1
 """seconds between attempts to connect."""
-CONNECTED_LOOK_S = 0.2
+CONNECTED_LOOK_S = 0.25
 """seconds between checks of a connection that did not report a loss."""
-QUIET_LOOKS, PONG_S = 10, 1.0
+QUIET_LOOKS, PONG_S = 8, 1.0
 """Checks of a silent connection after which it is pinged, and seconds for the answer: an outage of the
 network is known after three seconds. A connection that receives messages is not pinged: with many robots on a
 busy computer the answer waits behind positions for longer than that."""
@@ -387,7 +387,7 @@ async def disconnection(client: Any, lost: asyncio.Event) -> None:
     received, quiet = -1, 0
     while client.is_connected and not lost.is_set():
         # Checks are counted, not seconds: messages that came while this computer was busy are read first.
-        await wait_at_most(lost, CONNECTED_LOOK_S)
+        await wait_at_most(lost, until_tick(CONNECTED_LOOK_S))
         before, received = received, client.stats["in_msgs"]
         quiet = quiet + 1 if received == before else 0
         if quiet >= QUIET_LOOKS:

@@ -55,7 +55,7 @@ from ...core.messages.robots import Abort
 from ...protocol.codec import decode_desk_request
 from ..model.events import Answering
 from ..model.robots import Robots
-from ..monitoring import BackgroundTasks, wait_at_most
+from ..monitoring import BackgroundTasks, until_tick, wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, gateways
 from ..storage.repositories.gateways import NewRequest, TakenRequest
@@ -282,7 +282,7 @@ class RequestRelay:
         while True:
             self._asked.clear()
             await self.begin_waiting()
-            await wait_at_most(self._asked, LOOK_S)
+            await wait_at_most(self._asked, until_tick(LOOK_S))
 
     async def begin_waiting(self) -> None:
         """Begin the waiting requests about robots of this gateway; raises StoreError."""
@@ -323,7 +323,7 @@ class RequestRelay:
                         error,
                     )
                     return False
-            await asyncio.sleep(LOOK_S)
+            await asyncio.sleep(until_tick(LOOK_S))
 
     async def _answer_to(self, taken: TakenRequest) -> dict[str, Any]:
         try:

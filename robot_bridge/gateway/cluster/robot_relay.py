@@ -28,7 +28,7 @@ from ..model.robot_columns import (
     RobotPlaces,
 )
 from ..model.robots import Robot, Robots
-from ..monitoring import wait_at_most
+from ..monitoring import until_tick, wait_at_most
 from .bus import EVERYBODY, POSITIONS
 from .membership import Membership
 from .messages import (
@@ -224,7 +224,7 @@ class DetailRelay:
     async def run(self) -> None:
         """Send until cancelled."""
         while True:
-            await asyncio.sleep(DETAIL_TICK_S)
+            await asyncio.sleep(until_tick(DETAIL_TICK_S))
             await self.send_changes()
 
     async def send_changes(self) -> None:

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError
 from ...core.messages.safety import StoppedGateways
-from ..monitoring import wait_at_most
+from ..monitoring import until_tick, wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
@@ -173,7 +173,7 @@ class EmergencyStopRelay:
             except StoreError as error:
                 log.debug("emergency stops cannot be looked up: %s", error)
                 await self._stop_if_cut_off()
-            await wait_at_most(self._look_now, LOOK_S)
+            await wait_at_most(self._look_now, until_tick(LOOK_S))
 
     async def _stop_if_cut_off(self) -> None:
         if not (self._stops_when_cut_off and self.is_cut_off()) or self._stops.in_force:
@@ -194,7 +194,7 @@ class EmergencyStopRelay:
 
     async def _call_again(self) -> None:
         while True:
-            await asyncio.sleep(LOOK_S)
+            await asyncio.sleep(until_tick(LOOK_S))
             stop = self._stops.current
             if stop is None or not self._stops.in_force:
                 continue

@@ -20,6 +20,7 @@ from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
+from ..monitoring import until_tick
 from ..site.places import crossing
 from ..storage.database import Database
 from ..storage.repositories import commands as stored_commands
@@ -247,7 +248,7 @@ class QueueRunner:
         """Run the queues until cancelled."""
         while True:
             try:
-                async with asyncio.timeout(LOOK_INTERVAL):
+                async with asyncio.timeout(until_tick(LOOK_INTERVAL)):
                     await self._event.wait()
             except TimeoutError:
                 self.schedule_all()

@@ -17,6 +17,7 @@ from sqlalchemy import URL, Connection, Engine
 from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError, SQLAlchemyError
 
 from ...core.errors import DataRefusedError, LockedError, StoreError, UncertainError
+from ..monitoring import until_tick
 from . import revisions
 from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
 from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_blocking_sessions
@@ -526,7 +527,7 @@ class Database:
     async def _watch_over(self) -> None:
         """Cut the connection to a server that does not answer: a frozen one enforces no limits of its own."""
         while True:
-            await asyncio.sleep(WATCH_INTERVAL_S)
+            await asyncio.sleep(until_tick(WATCH_INTERVAL_S))
             for worker in (self._worker, self._aside):
                 worker.interrupt_if_stuck()
 

@@ -138,3 +138,21 @@ def test_the_watchdog_is_fed_twice_as_often_as_it_asks(monkeypatch, limit, proce
         "WATCHDOG_PID", "" if process is None else str(os.getpid()) if process == "self" else process
     )
     assert watchdog_interval() == interval
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 2.0, 60.0])
+def test_what_is_done_at_intervals_is_done_at_common_moments_and_never_later(seconds, monkeypatch):
+    for now in (0.0, 0.01, 0.2489, 0.26, 7.4999):
+        monkeypatch.setattr(tasks.time, "monotonic", lambda now=now: tasks._TICKS_SINCE + now)
+        wait = tasks.until_tick(seconds)
+        assert (now + wait) / tasks.TICK_S == pytest.approx(round((now + wait) / tasks.TICK_S))
+        # What an event loop rounds off is not done twice.
+        assert seconds / 2 <= wait <= seconds + tasks._ROUNDING_S
+
+
+def test_work_that_takes_long_rests_for_half_its_interval(monkeypatch):
+    monkeypatch.setattr(tasks.time, "monotonic", lambda: tasks._TICKS_SINCE + 0.24)
+    assert tasks.until_tick(0.25) == pytest.approx(0.26)
+    monkeypatch.setattr(tasks.time, "monotonic", lambda: tasks._TICKS_SINCE + 0.1)
+    assert tasks.until_tick(0.25) == pytest.approx(0.15)
+    assert tasks.until_tick(0.01) == 0.01
