@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 import re
 import secrets
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fnmatch import fnmatchcase
+from typing import Any, TypeVar
 
 from sqlalchemy import Connection, func, insert, literal, null, select, union_all, update
 
@@ -322,6 +323,8 @@ def revoke(connection: Connection, kind: TokenKind, owner: str, now: float) -> i
 
 # --- Accounts cached by a running gateway: reread when they change, also by another program
 
+T = TypeVar("T")
+
 
 class AccountCache:
     """All tokens in memory, so that connection attempts do not load the database.
@@ -337,7 +340,16 @@ class AccountCache:
 
     async def refresh(self) -> bool:
         """Apply changes and return whether there were any; raises StoreError."""
-        found = await self._database.read(_read, self._fingerprint)
+        return self._apply(await self._database.read(_read, self._fingerprint))
+
+    async def refresh_with(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`refresh`; return what ``work`` reads, done in the same visit to the database."""
+        result: T
+        found, result = await self._database.read(_read_with, self._fingerprint, work, arguments)
+        self._apply(found)
+        return result
+
+    def _apply(self, found: tuple[tuple[object, ...], list[Grant]] | None) -> bool:
         if found is None:
             return False
         self._fingerprint, grants = found
@@ -374,6 +386,15 @@ def _read(
 ) -> tuple[tuple[object, ...], list[Grant]] | None:
     fingerprint = accounts_fingerprint(connection)
     return None if fingerprint == known else (fingerprint, grants(connection))
+
+
+def _read_with(
+    connection: Connection,
+    known: tuple[object, ...] | None,
+    work: Callable[..., T],
+    arguments: tuple[Any, ...],
+) -> tuple[tuple[tuple[object, ...], list[Grant]] | None, T]:
+    return _read(connection, known), work(connection, *arguments)
 
 
 # --- Accounts of links: which adapter may speak for which robots ---

@@ -17,7 +17,7 @@ from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import AccessError, ForbiddenError, StoreError, counted
 from ...core.messages.base import DeskRequest, Role
 from ...core.sites.settings_tables import LimitSettings
-from ..monitoring import BackgroundTasks
+from ..monitoring import BackgroundTasks, until_tick
 from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in
@@ -187,7 +187,7 @@ def _kinds(connection: ClientConnection, identity: Identity) -> list[object]:
 
 # --- Admission of connections, and their end ---
 
-LOOK_INTERVAL = 0.4
+LOOK_INTERVAL = 0.5
 """Seconds after which a token that was revoked elsewhere is noticed."""
 READ_AGAIN_AFTER = 0.1
 """Seconds between two reads of the accounts because of an unknown token."""
@@ -254,7 +254,7 @@ class AuthGate:
         :raises StoreError: when they cannot be read; the last ones stay in force.
         """
         while True:
-            await asyncio.sleep(LOOK_INTERVAL)
+            await asyncio.sleep(until_tick(LOOK_INTERVAL))
             try:
                 await self.refresh()
             except StoreError as error:
@@ -262,14 +262,13 @@ class AuthGate:
 
     async def refresh(self) -> None:
         """Apply changed accounts, and end connections no longer permitted; raises StoreError."""
-        await self.accounts.refresh()
+        desks = self._guests.sessions
+        ended = await self.accounts.refresh_with(audit.ended_sessions, list(desks))
         without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
         for connection, identity in self._guests:
             fault = without_token[identity.kind] if identity.token is None else self._fault(identity)
             if fault is not None:
                 self._guests.end(connection, REVOKED, fault)
-        desks = self._guests.sessions
-        ended = await self._database.read(audit.ended_sessions, list(desks))
         # A gateway that starts cannot distinguish the sessions of its own earlier run.
         left = [session for session, reason in ended.items() if reason == audit.GATEWAY_ENDED]
         if left:
