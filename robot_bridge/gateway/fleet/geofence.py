@@ -174,7 +174,9 @@ class GeofenceWatch:
 
     async def _fences(self) -> Fences:
         """Return the areas that robots must not be in; changed ones are made in a thread."""
-        fences = await asyncio.to_thread(self._site.fences)
+        fences = self._site.fences_at_hand()
+        if fences is None:
+            fences = await asyncio.to_thread(self._site.fences)
         if fences is not self._fenced:
             # If only observed objects changed, the publication's areas and the stays in them are the same.
             if self._fenced is None or fences.keepouts is not self._fenced.keepouts:
@@ -188,6 +190,8 @@ class GeofenceWatch:
             self._left, self._seen = left, -1
         self._stays.forget({stay.robot for stay in self._stays if not self._is_judged(stay.robot)})
         seen = self._robots.revision
+        if seen == self._seen and not len(self._stays):
+            return
         names, places = _placed(self._robots, self._seen, left)
         settings = self._site.settings
         found = FoundStays(set(), {}, {}, set())

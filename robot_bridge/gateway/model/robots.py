@@ -454,6 +454,9 @@ class Robots:
 
     def age(self, now: float) -> None:
         """Update the state of every robot to ``now``; each one that changed gets a new revision."""
+        if not self.revision:
+            # There was no robot yet.
+            return
         for name in self._own_columns.outdated(now, self._stale_after, self._lost_after):
             robot = self._robots[name]
             # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.

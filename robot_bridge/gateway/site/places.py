@@ -58,6 +58,9 @@ class ServedSite(Protocol):
         The same object while nothing has changed, and the same keepouts if only objects have.
         """
 
+    def fences_at_hand(self) -> Fences | None:
+        """Return what :meth:`fences` does if it is made already, else None; does not wait."""
+
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site, None if it is larger than the site allows; may take long."""
 

@@ -289,12 +289,18 @@ class SiteMaps:
 
     def fences(self) -> Fences:
         """Return the areas forbidden to robots: those of the publication, and accepted objects."""
-        drawn, made = self._drawn, self._fences
-        if made is None or made[0] is not drawn:
+        made = self.fences_at_hand()
+        if made is None:
+            drawn = self._drawn
             observed = FencedPolygons.of(drawn.objects.areas())
-            fences = dataclasses.replace(drawn.site.fences, observed=observed)
-            made = self._fences = (drawn, fences)
-        return made[1]
+            made = dataclasses.replace(drawn.site.fences, observed=observed)
+            self._fences = (drawn, made)
+        return made
+
+    def fences_at_hand(self) -> Fences | None:
+        """Return what :meth:`fences` does if it is made already, else None; does not wait."""
+        made = self._fences
+        return None if made is None or made[0] is not self._drawn else made[1]
 
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site in the binary format, None if that is larger than allowed.

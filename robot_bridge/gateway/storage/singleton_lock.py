@@ -19,7 +19,7 @@ import time
 import uuid
 from collections.abc import AsyncIterator
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from sqlalchemy import URL, Connection, Engine, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
@@ -28,6 +28,7 @@ from ...core.errors import BridgeError, FatalError, StoreError, listed_names
 from ...core.files import write_state
 from ...core.json_decoder import SHORT, DecodingError, decode_json
 from ...core.logs import TroubleNews
+from ..monitoring import until_tick
 from .database import Database, open_engine, shown
 from .dialects import Dialect, SQLite, sqlite_file_of
 from .repositories import gateways as stored_gateways
@@ -52,6 +53,9 @@ _TAKEN = {"55P03", 1205}
 
 class GatewayLock(Protocol):
     """A lock on one kind of database; all methods block, so they are called in a thread."""
+
+    may_be_lost: ClassVar[bool]
+    """Whether it can be lost while the process lives: it is pinged then."""
 
     def acquire(self) -> bool:
         """Take the lock; return false when it is held elsewhere."""
@@ -111,7 +115,9 @@ class SingletonLock:
         :raises FatalError: when another gateway has taken it over while this one was cut off from it.
         """
         while True:
-            await asyncio.sleep(PING_INTERVAL)
+            await asyncio.sleep(until_tick(PING_INTERVAL))
+            if not self._lock.may_be_lost:
+                continue
             try:
                 await asyncio.to_thread(self._lock.ping)
             except StoreError as error:
@@ -129,7 +135,7 @@ class SingletonLock:
                 taken = await asyncio.to_thread(self._lock.acquire)
                 other = await asyncio.to_thread(self._lock.read)
             except StoreError:
-                await asyncio.sleep(PING_INTERVAL)
+                await asyncio.sleep(until_tick(PING_INTERVAL))
                 continue
             if other.get("run") != self._run["run"]:
                 raise FatalError(
@@ -139,7 +145,7 @@ class SingletonLock:
             if taken:
                 return
             # The server has not noticed yet that the previous connection is gone.
-            await asyncio.sleep(PING_INTERVAL)
+            await asyncio.sleep(until_tick(PING_INTERVAL))
 
 
 @contextlib.asynccontextmanager
@@ -163,6 +169,8 @@ async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
 
 class FileLock:
     """A lock on a file beside an SQLite database; the system releases it with the process."""
+
+    may_be_lost: ClassVar[bool] = False
 
     def __init__(self, url: URL) -> None:
         self._url = url
@@ -223,6 +231,8 @@ class FileLock:
 
 class ServerLock:
     """A lock in a transaction of its own connection, which the server ends when the connection is silent."""
+
+    may_be_lost: ClassVar[bool] = True
 
     def __init__(self, url: URL) -> None:
         self._url = url
@@ -435,7 +445,7 @@ class MessageNote:
         here are not of that state; a restart puts it right.
         """
         while True:
-            await asyncio.sleep(PING_INTERVAL)
+            await asyncio.sleep(until_tick(PING_INTERVAL))
             count = None
             # The users of the database report that it is away; meanwhile it gives out no messages.
             with contextlib.suppress(StoreError):
