@@ -291,6 +291,8 @@ class TrajectoryWriter:
 
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
         """Store robots and positions; only data that the database refuses is left out."""
+        if not (known or fixes or self._stored or self._jotted):
+            return WrittenRobots(set(), set())
         try:
             return WrittenRobots(
                 await self._database.run(_write, known, fixes, self._stored, self._fence), set()

@@ -277,3 +277,15 @@ async def test_how_a_robot_fell_silent_is_stored(database):
         later = Robots()
         later.restore(stored, 60.0)
         assert later.get("r1").state.value == state
+
+
+async def test_where_there_is_nothing_to_store_the_database_is_left_alone(database):
+    yard, written = Yard(database), []
+    database.add_observer(written.append)
+    await yard.saving.save()
+    assert written == []
+    yard.tell(1.0)
+    await yard.saving.save()
+    # From now on it is looked at, for robots that others remove.
+    await yard.saving.save()
+    assert len(written) == 2
