@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import ctypes
 import logging
+import math
 import os
 import time
 from collections import Counter
@@ -14,7 +17,7 @@ from sqlalchemy import Engine
 
 from ...core.errors import in_one_line
 from ...core.logs import TroubleNews
-from ..monitoring import wait_at_most
+from ..monitoring import until_tick, wait_at_most
 from .roles.blocking_sessions import Offences
 
 if TYPE_CHECKING:
@@ -74,6 +77,10 @@ class OwnBackend(Protocol):
 class ReaderLock(Protocol):
     """The lock by which writers know whether the reader is awake."""
 
+    @property
+    def session(self) -> int:
+        """A number that changes with every connection that may hold it."""
+
     async def enable_notifications(self) -> bool:
         """Take it; return false while a writer still assumes that the reader is awake."""
 
@@ -97,12 +104,15 @@ class PollingWakeup:
 
     async def wait(self, *, found: bool) -> None:
         """Return after a pause."""
-        now = time.monotonic()
         if found:
-            self._found_at = now
-        longest = LONGEST_S if now - self._found_at < QUIET_AFTER_S else SELDOM_S
+            self._found_at = time.monotonic()
+        longest = SELDOM_S if self._is_quiet else LONGEST_S
         self._pause = SHORTEST_S if found else min(2 * self._pause, longest)
         await asyncio.sleep(self._pause)
+
+    @property
+    def _is_quiet(self) -> bool:
+        return time.monotonic() - self._found_at >= QUIET_AFTER_S
 
     async def close(self) -> None:
         """Do nothing."""
@@ -112,17 +122,24 @@ class LogWakeup(PollingWakeup):
     """Returns when the file ``log``, SQLite's write-ahead log, was written to, or after :data:`UNSEEN_S`.
 
     A stat takes a twentieth of the time of a query. Two writes within one tick of the file system's clock may
-    leave the same time and size: hence the limit.
+    leave the same time and size: hence the limit. After a while without rows the system reports writes
+    (:class:`FileEvents`), where it can, and nothing is polled in between.
     """
 
     def __init__(self, log: Path) -> None:
         super().__init__()
         self._log = log
+        self._events: FileEvents | None = None
+        self._returned_at = -math.inf
         self._seen: tuple[int, int] | None = None
         """Time and size of the log before the reader last began to read the tables."""
 
     async def wait(self, *, found: bool) -> None:
         """Return when the log was written to; without a log after a pause."""
+        if not found and self._is_quiet and self._is_watched():
+            await self._wait_for_event()
+            return
+        self._unwatch()
         until = time.monotonic() + UNSEEN_S
         while True:
             await super().wait(found=found)
@@ -131,12 +148,91 @@ class LogWakeup(PollingWakeup):
                 break
         self._seen = state
 
+    async def close(self) -> None:
+        """Stop watching the log."""
+        self._unwatch()
+
+    async def _wait_for_event(self) -> None:
+        """Return after a write, :data:`SELDOM_S` after the last return at the earliest, or after a second."""
+        assert self._events is not None
+        if self._returned_at > -math.inf:
+            await asyncio.sleep(self._returned_at + SELDOM_S - time.monotonic())
+            await self._events.wait(until_tick(FALLBACK_S))
+        self._returned_at = time.monotonic()
+
+    def _is_watched(self) -> bool:
+        """Return whether events report writes to the log; it may be another file than before."""
+        if self._events is None or not self._events.is_of(self._log):
+            self._unwatch()
+            self._events = FileEvents.of(self._log)
+        return self._events is not None
+
+    def _unwatch(self) -> None:
+        events, self._events = self._events, None
+        self._returned_at = -math.inf
+        if events is not None:
+            events.close()
+
     def _state(self) -> tuple[int, int] | None:
         try:
             now = self._log.stat()
         except OSError:
             return None
         return now.st_mtime_ns, now.st_size
+
+
+class FileEvents:
+    """Reports writes to one file by inotify, which only Linux has; a wait is for a write since the last."""
+
+    def __init__(self, descriptor: int, file: tuple[int, int]) -> None:
+        self._descriptor = descriptor
+        self._file = file
+
+    @classmethod
+    def of(cls, path: Path) -> FileEvents | None:
+        """Return the events of the file at ``path``; None without it, and where the system has no events."""
+        try:
+            libc = ctypes.CDLL(None, use_errno=True)
+            descriptor = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
+        except (AttributeError, OSError):
+            return None
+        if descriptor < 0:
+            return None
+        with contextlib.suppress(OSError):
+            # Before the watch: of a file that takes its place meanwhile this is not the number.
+            file = path.stat()
+            if libc.inotify_add_watch(descriptor, os.fsencode(path), _IN_MODIFY) >= 0:
+                return cls(descriptor, (file.st_dev, file.st_ino))
+        os.close(descriptor)
+        return None
+
+    def is_of(self, path: Path) -> bool:
+        """Return whether ``path`` is still the file."""
+        try:
+            file = path.stat()
+        except OSError:
+            return False
+        return self._file == (file.st_dev, file.st_ino)
+
+    async def wait(self, seconds: float) -> None:
+        """Return after a write, or after ``seconds``."""
+        loop = asyncio.get_running_loop()
+        written = asyncio.Event()
+        # Not watched between two waits: a file that is written to a thousand times a second is one event.
+        loop.add_reader(self._descriptor, written.set)
+        try:
+            await wait_at_most(written, seconds)
+        finally:
+            loop.remove_reader(self._descriptor)
+        with contextlib.suppress(BlockingIOError):
+            os.read(self._descriptor, 4096)
+
+    def close(self) -> None:
+        """End the reports."""
+        os.close(self._descriptor)
+
+
+_IN_MODIFY = 0x2
 
 
 class NotifiedWakeup:
@@ -163,13 +259,19 @@ class NotifiedWakeup:
 
     async def wait(self, *, found: bool) -> None:
         """Return when something was written, or after a second."""
+        await self.is_notified()
+
+    async def is_notified(self) -> bool:
+        """Return true when something was written or may be unheard, false after a second without that."""
         if self._task is None:
             self._task = asyncio.create_task(self._listen())
         if self.is_flooded:
             await asyncio.sleep(LONGEST_S)
-            return
-        await wait_at_most(self._news, FALLBACK_S)
+            return True
+        await wait_at_most(self._news, until_tick(FALLBACK_S))
+        is_notified = self._news.is_set()
         self._news.clear()
+        return is_notified
 
     async def close(self) -> None:
         """End the connection."""
@@ -282,29 +384,46 @@ class AdaptiveWakeup:
         self._listening = listening
         self._polling = PollingWakeup()
         self._lock = lock
-        self._is_notified = False
+        self._dozes_in: int | None = None
+        """The session of the lock while it is held: a lost connection has lost it."""
         self._pace = 0.0
         """Seconds to wait after a notification, as long as no rows followed the last ones."""
 
     async def enable_notifications(self) -> bool:
-        """Begin to doze; return false while a writer still assumes that the reader is awake."""
+        """Begin to doze, or doze on; return false while a writer still assumes that the reader is awake."""
         # With the listener off it would sleep until the second is over.
-        self._is_notified = not self._listening.is_flooded and await self._lock.enable_notifications()
-        return self._is_notified
+        if self._listening.is_flooded:
+            self._dozes_in = None
+        elif self._dozes_in != self._lock.session:
+            self._dozes_in = await self._take_lock()
+        return self._dozes_in is not None
+
+    async def _take_lock(self) -> int | None:
+        """Take the lock, and return the session that has it; None where it cannot be had."""
+        for _ in range(2):
+            session = self._lock.session
+            if not await self._lock.enable_notifications():
+                return None
+            # Else the connection was a new one by then, or is one by now: it is asked for once more.
+            if self._lock.session == session:
+                return session
+        return None
 
     async def wait(self, *, found: bool) -> None:
         """Return when something was written, or after a second; while awake, after a pause."""
         if found:
             self._pace = 0.0
-        if not self._is_notified:
+        if self._dozes_in is None:
             await self._polling.wait(found=found)
             return
         if not found:
-            await self._listening.wait(found=False)
+            if not await self._listening.is_notified():
+                # It has a look at the tables, and dozes on: writers notify meanwhile.
+                return
             # One read of the tables serves any number of notifications.
             await asyncio.sleep(self._pace)
             self._pace = min(max(2 * self._pace, FIRST_PACE_S), LONGEST_S)
-        self._is_notified = False
+        self._dozes_in = None
         await self._lock.disable_notifications()
 
     async def close(self) -> None:

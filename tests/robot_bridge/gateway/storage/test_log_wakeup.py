@@ -68,6 +68,52 @@ async def test_it_looks_at_the_tables_after_a_while_whatever_the_log_shows(wakeu
     assert time.monotonic() - began >= 0.25
 
 
+@pytest.fixture
+async def quiet(gateway, monkeypatch):
+    """One that the system tells of writes, since nobody has asked for a while; nothing else wakes it."""
+    monkeypatch.setattr(wakeups, "QUIET_AFTER_S", 0.0)
+    monkeypatch.setattr(wakeups, "FALLBACK_S", 3600.0)
+    monkeypatch.setattr(wakeups.LogWakeup, "_state", lambda _: pytest.fail("the log was polled"))
+    wakeup = gateway.wakeup("rr")
+    # What was written before the system watched is found by the first look.
+    await asyncio.wait_for(wakeup.wait(found=False), 5 * BUSY)
+    yield wakeup
+    await wakeup.close()
+
+
+async def test_the_system_tells_of_a_write_where_nobody_has_asked_for_a_while(quiet, sqlite_url):
+    waiting = asyncio.ensure_future(quiet.wait(found=False))
+    assert await is_waiting(waiting)
+    robot = Database(sqlite_url)
+    await robot.run(ask)
+    await asyncio.wait_for(waiting, 5 * BUSY)
+    await robot.close()
+
+
+async def test_what_is_written_while_it_looks_ends_the_next_wait(quiet, sqlite_url):
+    robot = Database(sqlite_url)
+    await robot.run(ask)
+    await asyncio.wait_for(quiet.wait(found=False), 5 * BUSY)
+    await robot.close()
+
+
+async def test_another_log_in_place_of_the_first_is_looked_at_and_watched(tmp_path, monkeypatch):
+    monkeypatch.setattr(wakeups, "QUIET_AFTER_S", 0.0)
+    monkeypatch.setattr(wakeups, "FALLBACK_S", 3600.0)
+    log = tmp_path / "fleet.db-wal"
+    log.write_bytes(b"one")
+    wakeup = wakeups.LogWakeup(log)
+    await wakeup.wait(found=False)
+    (tmp_path / "new").write_bytes(b"two")
+    (tmp_path / "new").rename(log)
+    await asyncio.wait_for(wakeup.wait(found=False), 5 * BUSY)
+    waiting = asyncio.ensure_future(wakeup.wait(found=False))
+    assert await is_waiting(waiting)
+    log.write_bytes(b"three")
+    await asyncio.wait_for(waiting, 5 * BUSY)
+    await wakeup.close()
+
+
 async def test_without_a_log_it_looks_at_the_tables_again_and_again(tmp_path):
     wakeup = wakeups.LogWakeup(tmp_path / "none-wal")
     for _ in range(20):

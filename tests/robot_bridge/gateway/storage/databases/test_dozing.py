@@ -7,8 +7,9 @@ import time
 
 import psycopg
 import pytest
-from sqlalchemy import delete, insert, make_url
+from sqlalchemy import delete, insert, make_url, text
 
+from robot_bridge.gateway.storage import wakeups
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.schema import rr, sa
 from tests.support.patience import BUSY
@@ -89,6 +90,28 @@ async def test_a_gateway_wakes_at_once_and_sees_what_it_was_told_of(wakeup, robo
         await waiting
         took.append(time.monotonic() - began)
     assert min(took) < 0.8  # else it is the second after which it looks unasked
+
+
+async def test_a_gateway_that_looked_unasked_dozes_on(wakeup, robot, told, monkeypatch):
+    monkeypatch.setattr(wakeups, "FALLBACK_S", 0.01)
+    for _ in range(3):
+        assert await wakeup.enable_notifications()
+        await wakeup.wait(found=False)
+    await robot.run(ask)
+    assert told() == 1
+
+
+async def test_a_gateway_that_has_another_connection_begins_to_doze_again(gateway, wakeup, robot, told):
+    assert await wakeup.enable_notifications()
+    await robot.run(
+        lambda connection: connection.execute(
+            text("select pg_terminate_backend(pid) from pg_locks where locktype = 'advisory'")
+        )
+    )
+    await gateway.run(lambda connection: connection.execute(text("select 1")).all())
+    assert await wakeup.enable_notifications()
+    await robot.run(ask)
+    assert told() == 1
 
 
 async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_awake(wakeup, robot, told):
