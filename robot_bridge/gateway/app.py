@@ -521,10 +521,7 @@ async def _check_frame(
 
 
 def _journals(settings: GatewaySettings, database: str) -> tuple[StopJournal | None, AbortJournal | None]:
-    """Return the journals of a gateway on the database with the id ``database``; of several without Aborts.
-
-    Its robots go on at another one, which does not read it; long after, it would stop them for nothing.
-    """
+    """Return the journals of a gateway on the database with the id ``database``."""
     folder = _state_folder(settings)
     name = None if settings.cluster is None else settings.cluster.name
     files = None if folder is None else journal_files(settings.database, folder, name)
@@ -532,8 +529,6 @@ def _journals(settings: GatewaySettings, database: str) -> tuple[StopJournal | N
         return None, None
     stops, aborts = StopJournal(files[0]), AbortJournal(files[1], database)
     stops.check()
-    if settings.cluster is not None:
-        return stops, None
     aborts.check()
     return stops, aborts
 

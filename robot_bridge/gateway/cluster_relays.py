@@ -49,7 +49,9 @@ class ClusterRelays:
             fleet.emergency, membership, exchange, lease, stops_when_cut_off=stops_when_cut_off
         )
         fleet.emergency.relay_by(self.stops)
-        self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database)
+        assert fleet.aborts is not None
+        self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database, fleet.aborts)
+        self._aborts = fleet.aborts
         self._positions = PositionRelay(fleet.robots, membership, exchange, largest)
         self._details = DetailRelay(fleet.robots, membership, exchange, largest)
         self._fences = FenceRelay(membership, exchange, fleet.events, largest)
@@ -85,6 +87,7 @@ class ClusterRelays:
             **once,
             "bus": self._cluster.exchange.run,
             "stops of others": self.stops.run,
+            "aborts of others": self._aborts.run,
             "beat": self._beat,
             "owners": self._follow_owners,
             "requests of others": self.requests.run,

@@ -24,7 +24,7 @@ from msgspec import Meta
 
 from ...core.errors import BridgeError
 from ...core.logs import RepeatedLines
-from ...core.messages.base import LONGEST_STATUS
+from ...core.messages.base import LONGEST_STATUS, MessageError, check_command_id, check_robot_name
 from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, StopOutcome
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
@@ -51,6 +51,8 @@ MOST_IDS = 1_000_000
 
 MOST_NAMED = 50
 """robots named individually in a message."""
+MOST_ABORTS = 1000
+"""Aborts in a message."""
 MOST_ALARMS, MOST_UNJUDGED = 300, 20
 """alarms of the geofence, and robots that it cannot judge, in a message and in a report to operators."""
 LONGEST_NAME = 200
@@ -158,6 +160,31 @@ class AbortCall(BusMessage, frozen=True, tag="abort"):
     call_id: Annotated[str, Meta(max_length=100)]
 
 
+class NotedAbort(msgspec.Struct, array_like=True, frozen=True):
+    """An Abort that was sent and is not stored: what a command needs, and since when (database time, s)."""
+
+    command: Id
+    robot: Robot
+    by: Annotated[str, Meta(max_length=200)]
+    at: Finite
+    reason: Line | None = None
+    aborts: Id | None = None
+    expires_in: Annotated[float, Meta(gt=0, le=1e12)] | None = None
+    emergency: bool = False
+
+
+class AbortsNoted(BusMessage, frozen=True, tag="aborts"):
+    """Aborts for the gateways that have, or get, their robots to store and send before anything else."""
+
+    aborts: Annotated[list[NotedAbort], Meta(max_length=MOST_ABORTS)]
+
+
+class AbortsSettled(BusMessage, frozen=True, tag="aborts-settled"):
+    """Noted Aborts, by id, that are stored or void since a time (database, s): nobody has to store them."""
+
+    commands: Annotated[dict[Id, Finite], Meta(max_length=MOST_ABORTS)]
+
+
 class PositionBatch(BusMessage, frozen=True, tag="positions"):
     """Positions of robots of the gateway, at the database's time ``t``, in seconds.
 
@@ -259,6 +286,8 @@ AnyMessage = (
     | StopCall
     | StopSeen
     | AbortCall
+    | AbortsNoted
+    | AbortsSettled
     | PositionBatch
     | DetailBatch
     | FenceReport
@@ -268,6 +297,8 @@ AnyMessage = (
 )
 _DECODER = msgspec.msgpack.Decoder(AnyMessage)
 _ENCODER = msgspec.msgpack.Encoder()
+Entry = TypeVar("Entry", bound=msgspec.Struct | str)
+"""What a message has a list of."""
 
 
 class Codec:
@@ -301,6 +332,8 @@ class Codec:
             raise BusMessageError(f"a message that cannot be read: {error}") from None
         if isinstance(message, PositionBatch):
             _check_lengths(message)
+        elif isinstance(message, AbortsNoted):
+            _check_aborts(message)
         return message
 
     def _signature(self, content: bytes) -> bytes:
@@ -327,13 +360,13 @@ def position_batches(whole: PositionBatch, largest: int) -> Iterator[PositionBat
         begin = end
 
 
-def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[list[RobotDetails]]:
-    """Yield the details in lists that fit into messages of ``largest`` bytes."""
-    some: list[RobotDetails] = []
+def batches(entries: Iterable[Entry], largest: int, most: int = MOST_ROBOTS) -> Iterator[list[Entry]]:
+    """Yield entries in lists of at most ``most`` that fit into messages of ``largest`` bytes."""
+    some: list[Entry] = []
     size = FRAME
-    for one in robots:
+    for one in entries:
         more = len(_ENCODER.encode(one))
-        if some and (size + more > largest or len(some) == MOST_ROBOTS):
+        if some and (size + more > largest or len(some) == most):
             yield some
             some, size = [], FRAME
         some.append(one)
@@ -349,6 +382,17 @@ def fitting_report(report: FenceReport, largest: int) -> FenceReport:
     fits = sum(size <= room for size in sizes)
     more = report.more + len(report.alarms) - fits
     return msgspec.structs.replace(report, alarms=report.alarms[:fits], more=more)
+
+
+def _check_aborts(noted: AbortsNoted) -> None:
+    try:
+        for abort in noted.aborts:
+            check_robot_name(abort.robot)
+            check_command_id(abort.command)
+            if abort.aborts is not None:
+                check_command_id(abort.aborts)
+    except MessageError as error:
+        raise BusMessageError(f"an Abort that cannot be: {error}") from None
 
 
 def _check_lengths(batch: PositionBatch) -> None:
@@ -383,11 +427,14 @@ COPY = (
 MOST_NUMBERED = 1024
 """messages about stops kept to detect copies: those of four gateways on a stop in 20 seconds."""
 
+URGENT = (Wake, NameQuery, NameAnswer, AbortsNoted, AbortsSettled)
+"""Messages that go over all buses."""
+
 Kind = TypeVar("Kind", bound=BusMessage)
 
 
 class Exchange:
-    """Sends over the first bus; stops, wakes and queries over all of them.
+    """Sends over the first bus; stops, Aborts, wakes and queries over all of them.
 
     A failing subscriber does not keep a message from others. Messages about stops arrive over several buses,
     and are delivered once: each copy would be answered, over every bus. A repeated call is another message,
@@ -421,7 +468,7 @@ class Exchange:
         if self._membership is not None:
             message = msgspec.structs.replace(message, sender_run=self._membership.me.run)
         content = self._codec.encode(message)
-        urgent = subject == STOP or isinstance(message, (Wake, NameQuery, NameAnswer))
+        urgent = subject == STOP or isinstance(message, URGENT)
         taken = [bus.publish(subject, content) for bus in (self._buses if urgent else self._buses[:1])]
         return any(taken)
 

@@ -2,7 +2,7 @@
 
 The request is committed into table ``relayed_requests`` before that gateway is woken, and done by the same
 handlers as a local request: only one gateway writes a robot's data. An Abort that is not answered within a
-second goes over the bus as well, to the robot's open connection.
+second goes over the bus as well, to the robot's open connection, and is noted at all gateways.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import contextlib
 import logging
 import uuid
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 
@@ -62,7 +62,7 @@ from ..storage.repositories.gateways import NewRequest, TakenRequest
 from ..storage.repositories.robots import FencedError
 from .bus import STOP
 from .membership import Membership
-from .messages import AbortCall, Exchange, Wake
+from .messages import AbortCall, Exchange, NotedAbort, Wake
 
 log = logging.getLogger(__name__)
 
@@ -90,6 +90,7 @@ TOO_OLD_S = 20.0
 """seconds after which no request that moves a robot is begun: nobody expects it any more."""
 STORED_WITHIN_S = 1.0
 """seconds after which an unanswered Abort goes over the bus as well."""
+LATER = "it is stored and sent as soon as the database takes it"
 MOST_AT_ONCE = 200
 FORGET_S = 3600.0
 
@@ -108,6 +109,16 @@ _PLAIN: dict[str, type[Exception]] = {
 }
 
 
+class AbortNoter(Protocol):
+    """Notes Aborts for the gateway that has, or gets, their robots."""
+
+    def note(self, aborts: Sequence[NotedAbort]) -> None:
+        """Have Aborts stored, and sent before anything else of their robots."""
+
+    def withdraw(self, ids: Sequence[str]) -> None:
+        """Have Aborts stored no more."""
+
+
 class RequestRelay:
     """Answers operators by ``handlers``, but relays requests about robots of other gateways."""
 
@@ -118,12 +129,16 @@ class RequestRelay:
         membership: Membership,
         exchange: Exchange,
         database: Database,
+        noter: AbortNoter,
     ) -> None:
         self._handlers = handlers
         self._robots = robots
         self._membership = membership
         self._exchange = exchange
         self._database = database
+        self._noter = noter
+        self._paused: dict[str, str] = {}
+        """the ids of the Aborts noted for pauses that could not be relayed, by robot."""
         self._asked = asyncio.Event()
         self._answered: dict[int, asyncio.Event] = {}
         self._doing = BackgroundTasks()
@@ -214,10 +229,13 @@ class RequestRelay:
         """Return the results of requests about robots of other gateways; raises as their handlers do."""
         # An Abort makes a robot stand for a pause, too; but a pause that waited too long is refused.
         stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
+        # What the last pause has left would end the task that this one keeps.
+        self._noter.withdraw([id for robot, _ in stops if (id := self._paused.pop(robot, None))])
         relaying = asyncio.ensure_future(self._ask(requests, operator))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
         sent: list[str] = []
         if stops and (not relaying.done() or relaying.exception() is not None):
+            self._noter.note([self._noted(robot, r, operator) for robot, r in stops if _stops(r)])
             sent = [robot for robot, request in stops if self._send_abort(robot, request)]
         try:
             answers = await relaying
@@ -225,10 +243,27 @@ class RequestRelay:
             if not stops:
                 raise
             to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
-            pauses = isinstance(stops[0][1], PauseRobot)
-            what = "The pause is not stored; an Abort" if pauses else "The Abort is not stored; it"
-            raise StoreError(f"{error}. {what} was {to}: look whether they stand") from error
+            # A pause that fails has become an Abort.
+            paused = [self._noted(robot, r, operator) for robot, r in stops if isinstance(r, PauseRobot)]
+            self._noter.note(paused)
+            self._paused.update((abort.robot, abort.command) for abort in paused)
+            what = "The pause is not stored; an Abort" if paused else "The Abort is not stored; it"
+            raise StoreError(f"{error}. {what} was {to}; {LATER}: look whether they stand") from error
         return [_result_in(answer) for answer in answers]
+
+    def _noted(self, robot: str, request: DeskRequest[Any], operator: str) -> NotedAbort:
+        reason: str | None = getattr(request, "reason", None)
+        if isinstance(request, PauseRobot):
+            reason = f"paused: {reason}" if reason else "paused"
+        return NotedAbort(
+            getattr(request, "command", str(uuid.uuid4())),
+            robot,
+            operator,
+            self._membership.database_time(),
+            reason,
+            getattr(request, "aborts", None),
+            getattr(request, "expires_in", None),
+        )
 
     def _send_abort(self, robot: str, request: DeskRequest[Any]) -> bool:
         call_id = f"abort-{getattr(request, 'command', uuid.uuid4())}"

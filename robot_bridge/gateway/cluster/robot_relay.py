@@ -44,7 +44,7 @@ from .messages import (
     PositionBatch,
     RobotDetails,
     Wake,
-    detail_batches,
+    batches,
     fitting_report,
     position_batches,
 )
@@ -255,7 +255,7 @@ class DetailRelay:
             sent[name] = _Sent(of_robot, of_pose, facts)
             if last is None or last.facts != facts:
                 changed.append(_details(name, facts))
-        for some in detail_batches(changed, self._largest):
+        for some in batches(changed, self._largest):
             self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
 
     def _apply(self, batch: DetailBatch) -> None:

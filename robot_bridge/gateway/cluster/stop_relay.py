@@ -1,23 +1,37 @@
-"""Emergency stops across gateways: over the bus, answered by each, and by polling each second."""
+"""Emergency stops across gateways, over the bus and by polling each second; Aborts that are not stored."""
 
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import uuid
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any, Protocol
 
+from msgspec.structs import replace
+
 from ...core.clock import SYSTEM_CLOCK, Clock
-from ...core.errors import StoreError
-from ...core.messages.safety import StoppedGateways
+from ...core.errors import StoreError, listed_names
+from ...core.messages.base import LONGEST_OPERATOR, one_line
+from ...core.messages.safety import LONGEST_REASON, StoppedGateways
 from ..monitoring import until_tick, wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
-from .bus import STOP
+from .bus import EVERYBODY, LARGEST_NOTIFICATION, STOP
 from .membership import Membership
-from .messages import Exchange, StopCall, StopSeen, Wake
+from .messages import (
+    MOST_ABORTS,
+    AbortsNoted,
+    AbortsSettled,
+    Exchange,
+    NotedAbort,
+    StopCall,
+    StopSeen,
+    Wake,
+    batches,
+)
 
 log = logging.getLogger(__name__)
 
@@ -266,3 +280,155 @@ def _fitting(names: Sequence[str]) -> list[str]:
             break
         found.append(name)
     return found
+
+
+# --- Aborts that were sent and could not be stored: noted at every gateway, for the one that gets the robot
+
+NOTE_VALID_S = 86_400.0
+"""seconds after which a noted Abort is dropped: the robot does something else by then."""
+MOST_NOTED = 10_000
+"""Aborts of other gateways noted here; of further ones only those who sent them know."""
+MOST_SETTLED = 10_000
+"""ids of Aborts remembered as stored or void, the newest."""
+TICK_S = 1.0
+"""seconds between attempts to send what the bus did not take."""
+AGAIN_S = 60.0
+"""seconds after which all is sent again: a message may have been lost."""
+ASKED_S = 5.0
+"""minimum seconds between that and a request for it: gateways of a fleet start together."""
+AT_ONCE = 32
+"""messages at once: a bus drops the oldest of more than 256."""
+
+
+class AbortKeeper(Protocol):
+    """The commands of this gateway, and the notes on its computer."""
+
+    def keep(self, aborts: Sequence[NotedAbort]) -> None:
+        """Note Aborts of other gateways, and store those of robots of this one."""
+
+    def discard(self, ids: Collection[str]) -> None:
+        """Keep these Aborts no longer: they are stored, or void."""
+
+
+class AbortRelay:
+    """The Aborts that any gateway of the fleet could not store, until one has stored them or found them void.
+
+    Which are due is found out by the gateway that has the robot, and said to all. Lost messages come again.
+    """
+
+    def __init__(self, exchange: Exchange, membership: Membership, keeper: AbortKeeper) -> None:
+        self._exchange = exchange
+        self._membership = membership
+        self._keeper = keeper
+        self._noted: dict[str, NotedAbort] = {}
+        self._settled: dict[str, float] = {}
+        """the times when Aborts were stored, or found void, the oldest first."""
+        self._unsent: dict[str, None] = {}
+        self._unsaid: dict[str, None] = {}
+        """settled ones that others are to be sent."""
+        self._sent_all_at = membership.database_time()
+        exchange.subscribe(AbortsNoted, self._hear)
+        exchange.subscribe(AbortsSettled, self._forget)
+        exchange.subscribe(Wake, self._woken)
+
+    @property
+    def noted(self) -> list[NotedAbort]:
+        """The Aborts that are not stored, as far as is known."""
+        return list(self._noted.values())
+
+    def left_for(self, robots: Iterable[str]) -> list[NotedAbort]:
+        """Return the noted Aborts of ``robots``."""
+        of = set(robots) if self._noted else set()
+        return [abort for abort in self._noted.values() if abort.robot in of]
+
+    def note(self, aborts: Iterable[NotedAbort]) -> None:
+        """Note Aborts here, and at the other gateways."""
+        for abort in aborts:
+            if abort.command not in self._noted:
+                reason = None if abort.reason is None else one_line(abort.reason, LONGEST_REASON)
+                self._noted[abort.command] = replace(abort, by=abort.by[:LONGEST_OPERATOR], reason=reason)
+                self._unsent[abort.command] = None
+        self.send_changes()
+
+    def settle(self, ids: Iterable[str]) -> None:
+        """Forget Aborts, and have the other gateways forget them: they are stored, or void."""
+        now = self._membership.database_time()
+        for abort in [abort for id in ids if (abort := self._drop(id)) is not None]:
+            # The clock of who noted it may be ahead.
+            self._remember(abort.command, max(now, abort.at))
+            self._unsaid[abort.command] = None
+        if self._unsaid:
+            self.send_changes()
+
+    async def run(self) -> None:
+        """Send what the bus did not take, and drop what is too old, until cancelled."""
+        while True:
+            await asyncio.sleep(TICK_S)
+            now = self._membership.database_time()
+            for id, abort in list(self._noted.items()):
+                if now - abort.at > NOTE_VALID_S:
+                    log.warning("Abort %s of robot %r is dropped: it is too old", id, abort.robot)
+                    self._drop(id)
+            if now - self._sent_all_at >= AGAIN_S:
+                self._send_all(now)
+            self.send_changes()
+
+    def send_changes(self) -> None:
+        """Send what other gateways do not know yet, some of it at a time."""
+        unsent = [self._noted[id] for id in self._unsent]
+        for some in itertools.islice(batches(unsent, LARGEST_NOTIFICATION, MOST_ABORTS), AT_ONCE):
+            if not self._exchange.send(EVERYBODY, AbortsNoted(self._exchange.gateway, some)):
+                return
+            for abort in some:
+                self._unsent.pop(abort.command, None)
+        for ids in itertools.islice(batches(self._unsaid, LARGEST_NOTIFICATION // 2, MOST_ABORTS), AT_ONCE):
+            settled = {id: self._settled[id] for id in ids}
+            if not self._exchange.send(EVERYBODY, AbortsSettled(self._exchange.gateway, settled)):
+                return
+            for id in ids:
+                self._unsaid.pop(id, None)
+
+    def _send_all(self, now: float) -> None:
+        self._sent_all_at = now
+        self._unsent = dict.fromkeys(self._noted)
+
+    def _drop(self, id: str) -> NotedAbort | None:
+        self._unsent.pop(id, None)
+        return self._noted.pop(id, None)
+
+    def _remember(self, id: str, at: float) -> None:
+        self._settled.pop(id, None)
+        self._settled[id] = at
+        if len(self._settled) > MOST_SETTLED:
+            oldest = next(iter(self._settled))
+            del self._settled[oldest]
+            self._unsaid.pop(oldest, None)
+
+    def _hear(self, message: AbortsNoted) -> None:
+        new = []
+        for abort in message.aborts:
+            if abort.at <= self._settled.get(abort.command, -1.0):
+                self._unsaid[abort.command] = None
+            elif abort.command not in self._noted and len(self._noted) < MOST_NOTED:
+                self._noted[abort.command] = abort
+                new.append(abort)
+        if new:
+            robots = listed_names(sorted({abort.robot for abort in new}))
+            log.warning("gateway %s could not store Aborts of %s; they are noted here", message.gw, robots)
+            self._keeper.keep(new)
+        if self._unsaid:
+            self.send_changes()
+
+    def _forget(self, message: AbortsSettled) -> None:
+        ids = [id for id, at in message.commands.items() if (known := self._noted.get(id)) and known.at <= at]
+        for id in ids:
+            self._drop(id)
+            self._remember(id, message.commands[id])
+        if ids:
+            self._keeper.discard(ids)
+
+    def _woken(self, wake: Wake) -> None:
+        # A gateway that comes, or whose bus is back, asks so for all that is known.
+        now = self._membership.database_time()
+        if wake.what == "positions" and now - self._sent_all_at >= ASKED_S:
+            self._send_all(now)

@@ -11,6 +11,7 @@ from collections.abc import (
     Awaitable,
     Callable,
     Collection,
+    Container,
     Coroutine,
     Iterable,
     Mapping,
@@ -36,6 +37,7 @@ from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from . import active_command, persistence
 from .active_command import ABORTED, GATEWAY, ActiveCommand, ActiveCommands, CommandOrder, Recall, given_up_by
+from .persistence import KeptAbort
 from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
 
 log = logging.getLogger(__name__)
@@ -47,6 +49,9 @@ DRIVEN_STEP = 0.5
 NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
 """Stands for a pose that was not stored: far from any real one."""
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
+SENT_ON_S = 60.0
+"""seconds after an Abort that another gateway could not store from which a newer command makes it void:
+clocks of gateways differ."""
 MOST_LATE = 1000
 """most acknowledgements of ended commands that wait for the database."""
 
@@ -90,11 +95,7 @@ class CommandService(CommandReader):
 
     async def restore(self) -> None:
         """Load the commands that an earlier gateway left open, and the Aborts that it left unstored."""
-        left = await asyncio.to_thread(self._unstored.read_notes)
-        for order in left:
-            log.warning("robot %r: Abort %s was not stored", order.robot, order.command)
-        # One of a robot that was removed would meet whoever comes by its name.
-        self._unstored.keep(order for order in left if order.robot in self._robots)
+        await asyncio.to_thread(self._unstored.restore, self._robots.__contains__)
         stored = await self._database.run(commands.still_open)
         self.adopt(command for command in stored if self._fence.owns(command.report.robot))
 
@@ -129,6 +130,20 @@ class CommandService(CommandReader):
         """Keep Aborts no longer: they are stored, or refused."""
         for order in aborts:
             self._unstored.discard(order)
+
+    def keep_left(self, left: Iterable[KeptAbort]) -> None:
+        """Store those Aborts that another gateway left of robots of this one, before any other message."""
+        self._unstored.keep_left(
+            one for one in left if one.order.robot in self._robots and self._fence.owns(one.order.robot)
+        )
+
+    def keep_left_for(self, robots: Iterable[str]) -> None:
+        """Store the Aborts left for ``robots``, which this gateway has, before any other message."""
+        self._unstored.keep_left_for(robots)
+
+    def discard_aborts(self, ids: Container[str]) -> None:
+        """Keep the Aborts with these ids no longer: another gateway has stored them, or found them void."""
+        self._unstored.discard_settled(ids)
 
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         """Send a robot the path to its target by ``write``. The target stays the command.
@@ -257,7 +272,7 @@ class CommandService(CommandReader):
 
     async def give_up(self, robot: str, reason: str) -> None:
         """End every command of a robot, which will not carry them out."""
-        self._unstored.drop(robot)
+        self._unstored.end(robot)
         await to_its_end(self._give_up(robot, reason))
 
     async def resolve_uncertain_commit(self) -> None:
@@ -339,14 +354,27 @@ class CommandService(CommandReader):
             yield
 
     async def _store_unstored(self, robots: Iterable[str]) -> None:
-        """Store the kept Aborts of robots; one that the database refuses is dropped."""
-        for order in self._unstored.of(robots):
+        """Store the kept Aborts of robots; one that is refused, or came too late, is dropped."""
+        for kept in self._unstored.of(robots):
+            order = kept.order
             with log_and_continue(log, f"storing Abort {order.command}", except_for=StoreError):
                 try:
+                    if kept.is_left:
+                        await self._check_not_sent_on(kept)
                     await self._store([order], [None], None)
                 except (DataRefusedError, RefusedError) as error:
                     log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
             self._unstored.discard(order)
+
+    async def _check_not_sent_on(self, kept: KeptAbort) -> None:
+        """Raise RefusedError where the robot got a command long after an Abort that was left; StoreError."""
+        order = kept.order
+        for newest in await self._database.run(commands.newest, order.robot, 1):
+            if newest.command != order.command and newest.steps[0].at > kept.at + SENT_ON_S:
+                raise RefusedError(
+                    f"it was not stored, and the robot has been sent on since ({newest.op} of "
+                    f"{newest.operator}): look whether it does what it should, and abort it if not"
+                )
 
     async def _store(
         self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: persistence.Also | None

@@ -16,7 +16,7 @@ from collections.abc import Awaitable, Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import URL, Connection, select
 
@@ -38,8 +38,9 @@ from ...core.messages.base import (
     check_robot_name,
 )
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
+from ..cluster.stop_relay import NOTE_VALID_S
 from ..commands.active_command import CommandOrder
-from ..commands.persistence import write_bare_aborts
+from ..commands.persistence import KeptAbort, write_bare_aborts
 from ..commands.service import CommandService
 from ..storage.database import Database, start_task
 from ..storage.dialects import sqlite_file_of
@@ -70,6 +71,42 @@ def journal_files(database: URL, folder: Path, gateway: str | None = None) -> tu
 
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
+NOT_UNDERSTOOD = "could not be understood"
+T = TypeVar("T")
+
+
+class Entry:
+    """An entry of a journal. All methods raise MessageError for one that is none."""
+
+    def __init__(self, noted: Any) -> None:
+        if not isinstance(noted, dict):
+            raise MessageError(f"{type(noted).__name__} in place of an object")
+        self._noted = noted
+
+    def value(self, name: str, kind: type[T]) -> T:
+        """Return the value of ``name``, which is a ``kind``."""
+        value = self.optional(name, kind)
+        if value is None:
+            raise MessageError(f"{name} is missing")
+        return value
+
+    def optional(self, name: str, kind: type[T]) -> T | None:
+        """Return the value of ``name``, which is a ``kind``, or None where it has none."""
+        value = self._noted.get(name)
+        if value is None or isinstance(value, kind):
+            return value
+        raise MessageError(f"{name} is no {kind.__name__}")
+
+    def id(self, name: str) -> str:
+        """Return the value of ``name``, which is the id of a command."""
+        check_command_id(value := self.value(name, str))
+        return value
+
+    @property
+    def reason(self) -> str | None:
+        """The reason, None also where it is no text: it keeps no stop from being one."""
+        reason = self._noted.get("reason")
+        return reason if isinstance(reason, str) else None
 
 
 class JournalFile:
@@ -107,8 +144,22 @@ class JournalFile:
         """
         return self._thread.submit(self._write, list(entries))
 
-    def read_entries(self) -> tuple[list[Any], str | None]:
-        """Return the entries that an earlier gateway left, oldest first, and what is wrong with the file."""
+    def read_entries(self, decode: Callable[[Entry], T]) -> tuple[list[T], str | None]:
+        """Return the entries that an earlier gateway left, oldest first, and what is wrong with the file.
+
+        ``decode`` raises MessageError for an entry that is none, or that no database could store; the others
+        are returned all the same.
+        """
+        noted, fault = self._content()
+        decoded = []
+        for one in noted:
+            try:
+                decoded.append(decode(Entry(one)))
+            except MessageError:
+                fault = NOT_UNDERSTOOD
+        return decoded, fault
+
+    def _content(self) -> tuple[list[Any], str | None]:
         try:
             content = self._file.read_bytes()
         except FileNotFoundError:
@@ -127,7 +178,7 @@ class JournalFile:
         except DecodingError as error:
             log.error("%s could not be understood: %s", self._file, error)
             noted = None
-        return (noted, None) if isinstance(noted, list) else ([], "could not be understood")
+        return (noted, None) if isinstance(noted, list) else ([], NOT_UNDERSTOOD)
 
     def _write(self, entries: list[object]) -> bool:
         try:
@@ -171,7 +222,9 @@ class StopJournal(JournalFile):
 
     def write(self, stops: Sequence[StopRow]) -> Future[bool]:
         """Write ``stops``, and no others; see :meth:`write_entries`."""
-        return self.write_entries(map(_plain, stops))
+        return self.write_entries(
+            {"id": stop.id, "at": stop.at, "by": stop.by, "reason": stop.reason} for stop in stops
+        )
 
     def read(self) -> list[StopRow]:
         """Return the stops that an earlier gateway left, oldest first.
@@ -179,12 +232,8 @@ class StopJournal(JournalFile):
         An entry that cannot be read or decoded counts as a stop all the same: a needless one is cleared by a
         supervisor, a forgotten one may cost more.
         """
-        noted, fault = self.read_entries()
-        if fault is not None:
-            return [self._unknown(fault)]
-        stops = [_stop(one) for one in noted]
-        understood = [stop for stop in stops if stop is not None]
-        return [*understood, *([self._unknown("could not be understood")] if None in stops else [])]
+        stops, fault = self.read_entries(_stop)
+        return stops if fault is None else [*stops, self._unknown(fault)]
 
     def _unknown(self, what: str) -> StopRow:
         """Return a stop in place of one that cannot be read."""
@@ -192,26 +241,8 @@ class StopJournal(JournalFile):
         return StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)
 
 
-def _plain(stop: StopRow) -> dict[str, object]:
-    return {"id": stop.id, "at": stop.at, "by": stop.by, "reason": stop.reason}
-
-
-def _stop(noted: Any) -> StopRow | None:
-    """Return the journaled stop; None for an entry that is none, or that no database could store."""
-    if not isinstance(noted, dict):
-        return None
-    id, at, by, reason = (noted.get(name) for name in ("id", "at", "by", "reason"))
-    if not (isinstance(id, str) and isinstance(at, float) and isinstance(by, str)):
-        return None
-    try:
-        check_command_id(id)
-    except MessageError:
-        return None
-    return StopRow(id, at, by, reason if isinstance(reason, str) else None)
-
-
-ABORT_VALID_S = 86_400.0
-"""seconds after which a noted Abort is dropped: the robot does something else by then."""
+def _stop(noted: Entry) -> StopRow:
+    return StopRow(noted.id("id"), noted.value("at", float), noted.value("by", str), noted.reason)
 
 
 class AbortJournal(JournalFile):
@@ -223,26 +254,18 @@ class AbortJournal(JournalFile):
     def __init__(self, file: Path, database: str) -> None:
         super().__init__(file)
         self._database = database
-        self._at: dict[str, float] = {}
 
-    def write(self, orders: Sequence[CommandOrder]) -> Future[bool]:
-        """Write ``orders``, and no others; see :meth:`write_entries`."""
-        now, at = time.time(), self._at
-        self._at = {order.command: at.get(order.command, now) for order in orders}
-        return self.write_entries([self._plain(order) for order in orders])
+    def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool]:
+        """Write ``kept``, and no others; see :meth:`write_entries`."""
+        return self.write_entries(map(self._plain, kept))
 
-    def read(self) -> list[CommandOrder]:
+    def read(self) -> list[KeptAbort]:
         """Return the Aborts that an earlier gateway left on this database, less than a day ago.
 
-        What cannot be understood is logged, and kept beside for whoever looks into it.
+        What cannot be understood is logged, and kept beside for whoever looks into it. The file is written
+        without what is dropped.
         """
-        noted, fault = self.read_entries()
-        orders = []
-        for one in noted:
-            try:
-                orders.append(self._understood(one))
-            except (MessageError, TypeError):
-                fault = "could not be understood"
+        noted, fault = self.read_entries(self._understood)
         if fault is not None:
             unread = self._file.with_name(f"{self._file.name}.unread")
             with contextlib.suppress(OSError):
@@ -253,9 +276,17 @@ class AbortJournal(JournalFile):
                 fault,
                 unread.name,
             )
-        return [order for order in orders if order is not None]
+        kept = [one for one in noted if one is not None]
+        if len(kept) < len(noted) or (kept and fault is not None):
+            self.write(kept)
+        return kept
 
-    def _plain(self, order: CommandOrder) -> dict[str, object]:
+    def left_for(self, robots: Iterable[str]) -> list[KeptAbort]:
+        """Return none: there is no other gateway."""
+        return []
+
+    def _plain(self, kept: KeptAbort) -> dict[str, object]:
+        order = kept.order
         return {
             "command": order.command,
             "robot": order.robot,
@@ -264,44 +295,32 @@ class AbortJournal(JournalFile):
             "aborts": order.aborts,
             "expires_in": order.expires_in,
             "emergency": order.is_emergency,
-            "at": self._at[order.command],
+            "at": kept.at,
             "database": self._database,
         }
 
-    def _understood(self, noted: Any) -> CommandOrder | None:
-        """Return the noted Abort; None for one of another database, or too old.
-
-        :raises MessageError, TypeError: for an entry that is none, or that no database could store.
-        """
-        if not isinstance(noted, dict):
-            raise TypeError("no object")
-        command, robot, operator, database, aborts, reason = (
-            noted.get(name) for name in ("command", "robot", "by", "database", "aborts", "reason")
-        )
-        at, expires_in = noted.get("at"), noted.get("expires_in")
-        if not (isinstance(command, str) and isinstance(robot, str) and isinstance(operator, str)):
-            raise TypeError("no text")
-        if not isinstance(at, float):
-            raise TypeError("no time")
-        check_command_id(command)
-        check_robot_name(robot)
-        if aborts is not None:
-            check_command_id(aborts)
+    def _understood(self, noted: Entry) -> KeptAbort | None:
+        """Return the noted Abort; None for one of another database, or too old; raises MessageError."""
+        command, robot = noted.id("command"), check_robot_name(noted.value("robot", str))
+        at, expires_in = noted.value("at", float), noted.optional("expires_in", float)
         check_expires_in(expires_in, math.inf)
-        if database != self._database or time.time() - at > ABORT_VALID_S:
-            which = "of another database" if database != self._database else "too old"
-            log.warning("%s: Abort %s of robot %r is dropped: it is %s", self._file, command, robot, which)
-            return None
-        self._at[command] = at
-        return CommandOrder(
+        emergency = noted.optional("emergency", bool) is True
+        aborts = None if noted.optional("aborts", str) is None else noted.id("aborts")
+        order = CommandOrder(
             command,
             robot,
-            Abort(emergency=noted.get("emergency") is True),
-            operator,
-            reason if isinstance(reason, str) else None,
+            Abort(emergency=emergency),
+            noted.value("by", str),
+            noted.reason,
             expires_in=expires_in,
             aborts=aborts,
         )
+        is_elsewhere = noted.optional("database", str) != self._database
+        if is_elsewhere or time.time() - at > NOTE_VALID_S:
+            which = "of another database" if is_elsewhere else "too old"
+            log.warning("%s: Abort %s of robot %r is dropped: it is %s", self._file, command, robot, which)
+            return None
+        return KeptAbort(order, at, is_left=True)
 
 
 # --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---

@@ -1,10 +1,11 @@
-"""Registration of robots that say Ready, their takeover by a gateway, name claims, decommissioning."""
+"""Registration of robots that say Ready, their takeover with Aborts left for them, names, decommissioning."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 from collections.abc import Collection, Iterable, Sequence
+from concurrent.futures import Future
 from functools import partial
 from typing import NamedTuple, Protocol
 
@@ -15,9 +16,13 @@ from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_na
 from ...core.logs import log_and_continue
 from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
 from ...core.messages.positions import link_elsewhere
-from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
-from ..cluster.messages import Exchange
+from ...core.messages.robots import Abort, Answer, OpAck, Ready, SetMap, Start
+from ..cluster.membership import Membership
+from ..cluster.messages import Exchange, NotedAbort
 from ..cluster.ownership import NameClaims, Ownership
+from ..cluster.stop_relay import AbortRelay
+from ..commands.active_command import CommandOrder
+from ..commands.persistence import KeptAbort
 from ..commands.service import CommandService
 from ..model.events import EventBus, RobotClaimed, RobotLeft, RobotsTakenUp, handles
 from ..model.robots import AWAY, Robot, Robots
@@ -34,6 +39,7 @@ from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.emergency_stops import StopRow
 from ..traffic.yielding import YieldManager
 from ..trajectories.recording import TrajectoryWriter
+from .emergency_persistence import AbortJournal
 from .emergency_stop import EmergencyStops
 from .robot_outboxes import MapSender, RequestOutcome, RobotOutboxes
 
@@ -208,6 +214,7 @@ class Takeover:
         for robot in known:
             self._robots.restore(robot, self._clock.time())
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
+        self._commands.keep_left_for([robot.name for robot in known])
         # One that is not stored yet is known to this gateway only by its Ready.
         for name in set(some) - {robot.name for robot in known}:
             self._robots.remove(name)
@@ -229,6 +236,98 @@ class Takeover:
             self._robots.let_go(robot, gateway)
             self._unsynced.add(gateway)
         self._events.publish(RobotLeft(robot, gateway or "none"))
+
+
+# --- Aborts that could not be stored, for the gateway that has or gets their robots
+
+
+class FleetAborts:
+    """The Aborts that gateways of one fleet could not store, noted on this computer and at all of them.
+
+    ``journal`` is None for a gateway without a folder of its own.
+    """
+
+    def __init__(self, journal: AbortJournal | None, exchange: Exchange, membership: Membership) -> None:
+        self._journal = journal
+        self._membership = membership
+        self._relay = AbortRelay(exchange, membership, self)
+        self._commands: list[CommandService] = []
+
+    def serve(self, commands: CommandService) -> None:
+        """Have ``commands`` store the Aborts of its robots that other gateways noted."""
+        self._commands.append(commands)
+
+    async def run(self) -> None:
+        """Have the other gateways know what is noted here, until cancelled."""
+        await self._relay.run()
+
+    # --- as AbortNotes of the commands
+
+    def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool] | None:
+        """Note what this gateway keeps, here and at the others; the result is whether it is on the disk."""
+        self._relay.note(map(self._noted, kept))
+        self._relay.settle(settled)
+        return self._write_journal()
+
+    def read(self) -> list[KeptAbort]:
+        """Note what the file of an earlier gateway has, for whoever has the robots; return none."""
+        if self._journal is not None:
+            self._relay.note(map(self._noted, self._journal.read()))
+        return []
+
+    def left_for(self, robots: Iterable[str]) -> list[KeptAbort]:
+        """Return the noted Aborts of ``robots``."""
+        return [self._left(abort) for abort in self._relay.left_for(robots)]
+
+    # --- as AbortNoter of requests about robots elsewhere
+
+    def note(self, aborts: Sequence[NotedAbort]) -> None:
+        """Note Aborts, here and at the others, for the gateway that has their robots."""
+        if aborts:
+            self._relay.note(aborts)
+            self.keep(aborts)
+
+    def withdraw(self, ids: Sequence[str]) -> None:
+        """Have Aborts stored no more, neither here nor elsewhere."""
+        if ids:
+            self._relay.settle(ids)
+            self.discard(ids)
+
+    # --- as AbortKeeper of the relay
+
+    def keep(self, aborts: Sequence[NotedAbort]) -> None:
+        """Note Aborts on this computer, and store those of robots of this gateway."""
+        for commands in self._commands:
+            commands.keep_left(map(self._left, aborts))
+        self._write_journal()
+
+    def discard(self, ids: Collection[str]) -> None:
+        """Keep Aborts no longer: another gateway has stored them, or found them void."""
+        for commands in self._commands:
+            commands.discard_aborts(ids)
+        self._write_journal()
+
+    def _write_journal(self) -> Future[bool] | None:
+        if self._journal is None:
+            return None
+        return self._journal.write([self._left(abort) for abort in self._relay.noted])
+
+    def _noted(self, kept: KeptAbort) -> NotedAbort:
+        order, at = kept.order, kept.at + self._membership.clock_offset
+        by, more = order.operator, (order.aborts, order.expires_in, order.is_emergency)
+        return NotedAbort(order.command, order.robot, by, at, order.reason, *more)
+
+    def _left(self, noted: NotedAbort) -> KeptAbort:
+        order = CommandOrder(
+            noted.command,
+            noted.robot,
+            Abort(emergency=noted.emergency),
+            noted.by,
+            noted.reason,
+            expires_in=noted.expires_in,
+            aborts=noted.aborts,
+        )
+        return KeptAbort(order, noted.at - self._membership.clock_offset, is_left=True)
 
 
 # --- Claims to names: a second robot that says Ready under the same account is detected and refused

@@ -59,7 +59,7 @@ from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
 from .operator_updates import Snapshots, reports_of
-from .registration import Decommissioning, Registration, Takeover
+from .registration import Decommissioning, FleetAborts, Registration, Takeover
 from .robot_outboxes import MapSender, RequestOutcome, RobotOutboxes
 from .robot_requests import ObservationService, RobotAnswers
 from .views import FleetViews
@@ -100,6 +100,7 @@ class Fleet:
         self.snapshots = Snapshots(self.robots, clock)
         self.views = FleetViews(self.robots, site, clock)
         rules, waiting = CommandRules(site, self.robots), WaitingRobots()
+        self.aborts = None if cluster is None else FleetAborts(aborts, cluster.exchange, cluster.membership)
         self._commands = CommandService(
             database,
             self.robots,
@@ -109,8 +110,10 @@ class Fleet:
             waiting,
             self.events,
             fence,
-            aborts,
+            aborts if self.aborts is None else self.aborts,
         )
+        if self.aborts is not None:
+            self.aborts.serve(self._commands)
         self.orders = CommandRequests(site, self.robots, self._commands, database)
         # A stop that is cleared by one gateway ends motions at others that began before.
         stop_clock = clock if cluster is None else cluster.membership.shared_clock

@@ -25,8 +25,10 @@ class GatewayPair:
         *options: str,
         three: bool = False,
     ):
+        self._folder = folder
+
         def start(name: str) -> Bridge:
-            state = folder / name
+            state = self.state(name)
             state.mkdir(exist_ok=True)
             served = site if isinstance(site, Path) else site[name]
             return start_bridge(served, url, ["--gateway-name", name, "--state", state, *options])
@@ -34,6 +36,10 @@ class GatewayPair:
         self.a, self.b = start("a"), start("b")
         if three:
             self.c = start("c")
+
+    def state(self, name: str) -> Path:
+        """Return the folder in which a gateway notes what must outlive it."""
+        return self._folder / name
 
     def robot(
         self, bridge: Bridge, name: str, magic: int = 1, at: tuple[float, float] = (20.0, 8.0)

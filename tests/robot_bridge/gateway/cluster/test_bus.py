@@ -47,7 +47,7 @@ from robot_bridge.gateway.cluster.messages import (
     StopCall,
     StopSeen,
     Wake,
-    detail_batches,
+    batches,
     position_batches,
 )
 from robot_bridge.gateway.cluster.nats_bus import NatsBus
@@ -110,10 +110,10 @@ def test_details_of_many_robots_fit_into_messages():
     long = [
         RobotDetails(f"robot-{n}", 0.5, 256 * "ű", 256 * "ő", 0.001, "asks", 128 * "a") for n in range(50)
     ]
-    lists = list(detail_batches(long, LARGEST_NOTIFICATION))
+    lists = list(batches(long, LARGEST_NOTIFICATION))
     assert [one for some in lists for one in some] == long
     assert all(len(details(*some)) <= LARGEST_NOTIFICATION for some in lists)
-    assert len(list(detail_batches(long, LARGEST))) == 1
+    assert len(list(batches(long, LARGEST))) == 1
 
 
 @pytest.mark.parametrize("largest", [LARGEST, LARGEST_NOTIFICATION])

@@ -6,13 +6,15 @@ import asyncio
 from dataclasses import fields
 from types import SimpleNamespace
 
+import pytest
 from sqlalchemy import text
 
+from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.base import DESK_REQUESTS, Role
-from robot_bridge.core.messages.commands import AbortTask
-from robot_bridge.core.messages.queues import TakeOver
+from robot_bridge.core.messages.commands import AbortTask, Send
+from robot_bridge.core.messages.queues import PauseRobot, TakeOver
 from robot_bridge.gateway.cluster import request_relay
-from robot_bridge.gateway.cluster.messages import Exchange
+from robot_bridge.gateway.cluster.messages import Exchange, NotedAbort
 from robot_bridge.gateway.cluster.request_relay import RequestRelay
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.database import Database, read_address
@@ -44,7 +46,7 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
     requests = [NewRequest.of("r1", AbortTask(id, "r1", None, None)) for id in ids]
     await database.run(gateways.add_requests, requests, "Ada", "b")
     handlers, fleet = Handlers(), SimpleNamespace(me=Member("a", "run"), name="a")
-    relay = RequestRelay(handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database)
+    relay = RequestRelay(handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database, Notes())
     running = asyncio.create_task(relay.run())
     try:
         async with asyncio.timeout(10 * BUSY):
@@ -55,6 +57,74 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
         await asyncio.gather(running, return_exceptions=True)
         await database.close()
     assert sorted(handlers.asked) == ids
+
+
+class Notes:
+    """What is noted for the gateways that have the robots."""
+
+    def __init__(self):
+        self.noted, self.withdrawn = [], []
+
+    def note(self, aborts):
+        self.noted += aborts
+
+    def withdraw(self, ids):
+        self.withdrawn += ids
+
+
+class Away:
+    """A database that is away for the next ``times``."""
+
+    def __init__(self, times):
+        self.times = times
+
+    async def run(self, work, *_arguments):
+        if self.times:
+            self.times -= 1
+            raise StoreError("away")
+        return [1] if work is gateways.add_requests else {1: '{"result": {}}'}
+
+
+ABORTS = {
+    "abort": AbortTask("abort-0001", "r1", None, "smoke"),
+    "abort of a command": AbortTask("abort-0001", None, "target-01", "smoke"),
+    "send": Send("abort-0001", "r1", "Abort", reason="smoke", expires_in=60.0),
+    "pause": PauseRobot("r1", "smoke"),
+}
+
+
+@pytest.fixture
+def known():
+    robots = Robots()
+    robots.ready("r1", 1, "websocket", 0.0)
+    robots.let_go("r1", "a")
+    robots.doing = {"target-01": "r1"}.get
+    return robots
+
+
+def relay_by(robots, notes, database):
+    fleet = SimpleNamespace(me=Member("b", "run"), name="b", database_time=lambda: 5000.0)
+    return RequestRelay(Handlers(), robots, fleet, Exchange("b", b"k" * 32, []), database, notes)
+
+
+@pytest.mark.parametrize("asked", sorted(ABORTS))
+async def test_an_abort_of_a_robot_elsewhere_that_cannot_be_stored_is_noted_for_its_gateway(known, asked):
+    relay, request = relay_by(known, notes := Notes(), Away(1)), ABORTS[asked]
+    with pytest.raises(StoreError, match=r"sent to no robot; it is stored and sent as soon as the database"):
+        await relay.answer(request, "Ada")
+    (noted,) = notes.noted
+    how = {
+        "abort": (noted.command, "smoke", None, None),
+        "abort of a command": (noted.command, "smoke", "target-01", None),
+        "send": (noted.command, "smoke", None, 60.0),
+        "pause": (noted.command, "paused: smoke", None, None),
+    }[asked]
+    assert noted == NotedAbort(how[0], "r1", "Ada", 5000.0, *how[1:])
+    assert asked == "pause" or noted.command == "abort-0001"
+    # A pause that is asked for again keeps the task, which that Abort would end.
+    await relay.answer(request, "Ada")
+    assert notes.noted == [noted]
+    assert notes.withdrawn == ([noted.command] if asked == "pause" else [])
 
 
 def test_what_is_asked_of_one_robot_is_done_by_the_gateway_that_has_it():

@@ -391,6 +391,64 @@ def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
     pair.a.start_gateway()
 
 
+@contextlib.contextmanager
+def commands_locked(bridge):
+    """Hold the table of commands, as an administrator's session does that was left in a transaction."""
+    with contextlib.closing(DatabaseClient(bridge.database)) as client:
+        client.sql("begin")
+        client.sql("lock table commands in access exclusive mode")
+        yield
+        client.sql("rollback")
+
+
+def abort_in_vain(pair, name):
+    """Have gateway a, which is killed then, send its robot an Abort that cannot be stored."""
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.a)
+    desk.wait_for_robots(name)
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    robot.wait_for("SetPosEnd")
+    desk.wait_for_step(f"c-{name}", "delivered")
+    with commands_locked(pair.b):
+        with pytest.raises(RefusedError, match=f"The Abort is not stored; it was sent to {name}"):
+            desk.ask("abort", {"command": f"abort-{name}", "robot": name}, 30.0)
+        robot.wait_for("Abort")
+        pair.a.kill_gateway()
+    robot.hang_up()
+
+
+def check_aborted_first(pair, name):
+    """Let the robot connect to gateway b: what it did ends before it is sent anything else."""
+    robot, desk = pair.robot(pair.b, name), desk_at(pair.b)
+    abort = robot.wait_for("Abort", 30.0)
+    assert [call for call in robot.calls if call["method"] == "SetPosEnd"] == []
+    robot.say(abort["id"])
+    desk.wait_for_step(f"c-{name}", "aborted")
+    assert desk.wait_for_step(f"abort-{name}", "acknowledged")["operator"] == "Ada"
+    # It takes on its next target.
+    desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    assert robot.hear("SetPosEnd")["x"] == 24.0
+
+
+def test_an_abort_that_could_not_be_stored_outlives_its_gateway(pair, name):
+    """The one to which its robot goes then stores it."""
+    abort_in_vain(pair, name)
+    check_aborted_first(pair, name)
+    pair.a.start_gateway()
+    file = next(pair.state("a").glob("aborts-*-a.json"))
+    wait_until(lambda: not file.exists())
+
+
+def test_an_abort_of_which_no_other_gateway_heard_is_in_the_file_of_its_own(pair, name):
+    pair.b.end()
+    abort_in_vain(pair, name)
+    pair.b.start_gateway()
+    pair.a.start_gateway()
+    # By whichever of the two has the robot by then.
+    stored = "select 1 from commands where id = ?"
+    wait_until(lambda: pair.b.sql(stored, f"abort-{name}"))
+    check_aborted_first(pair, name)
+
+
 def test_robots_of_two_gateways_are_aborted_together(pair, name):
     there, here = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
     desk = desk_at(pair.b)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
-from robot_bridge.core.messages.robots import SetPath
+from robot_bridge.core.messages.robots import Abort, SetPath
 from robot_bridge.core.messages.safety import EmergencyStop
-from robot_bridge.gateway.commands.persistence import insert_commands
+from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.persistence import KeptAbort, insert_commands
+from robot_bridge.gateway.commands.service import SENT_ON_S
 from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 
 LOST = pytest.mark.parametrize(
@@ -195,3 +199,39 @@ async def test_one_of_a_robot_that_is_removed_is_forgotten(driving, lose):
     await driving.fleet._commands.give_up("r1", "removed")
     await driving.fleet.save()
     assert "abort" not in await driving.states()
+
+
+def leave(yard, age=0.0, robot="r1"):
+    """Have another gateway leave the Abort of a robot, of so many seconds ago."""
+    order = CommandOrder(f"abort-of-{robot}", robot, Abort(), "Ada")
+    yard.fleet._commands.keep_left([KeptAbort(order, yard.now - age, is_left=True)])
+
+
+async def test_one_that_another_gateway_left_comes_before_anything_else(driving):
+    leave(driving)
+    await driving.send("next")
+    assert driving.waiting("r1") == ["Abort", "SetPosEnd"]
+
+
+@pytest.mark.parametrize("aside", [-1.0, 1.0])
+async def test_it_is_void_where_the_robot_was_sent_on_long_after_it(driving, caplog, aside):
+    """Its gateway comes back, and nobody knew of it meanwhile."""
+    leave(driving, SENT_ON_S + aside)
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ([] if aside > 0 else ["Abort"])
+    assert ("the robot has been sent on since (SetPosEnd of Ada): look whether" in caplog.text) is (aside > 0)
+
+
+async def test_it_is_not_void_however_long_nobody_could_send_the_robot_anything(driving):
+    driving.now += 10 * SENT_ON_S
+    leave(driving, 9 * SENT_ON_S)
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["Abort"]
+
+
+async def test_one_of_a_robot_that_another_gateway_has_is_left_to_that(driving):
+    book = driving.fleet._commands
+    book._fence = SimpleNamespace(owns=lambda robot: robot != "r1")
+    for robot in ("r1", "r2", "r9"):
+        leave(driving, robot=robot)
+    assert book._unstored.robots() == ["r2"]

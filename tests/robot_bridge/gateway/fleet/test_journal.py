@@ -17,14 +17,10 @@ from sqlalchemy import make_url
 
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages.robots import Abort
+from robot_bridge.gateway.cluster.stop_relay import NOTE_VALID_S
 from robot_bridge.gateway.commands.active_command import CommandOrder
-from robot_bridge.gateway.commands.persistence import UnstoredAborts
-from robot_bridge.gateway.fleet.emergency_persistence import (
-    ABORT_VALID_S,
-    AbortJournal,
-    StopJournal,
-    journal_files,
-)
+from robot_bridge.gateway.commands.persistence import KeptAbort, UnstoredAborts
+from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.errors import StageError
 from tests.support.faults.disk import Disk
@@ -282,25 +278,71 @@ def aborts_file(tmp_path):
     return tmp_path / "fleet.db.aborts"
 
 
+def kept_since(at, orders=ABORTS):
+    return [KeptAbort(order, at) for order in orders]
+
+
+def left(kept):
+    return [one._replace(is_left=True) for one in kept]
+
+
 async def test_aborts_are_read_as_they_were_written_and_gone_once_none_is_left(aborts_file):
-    journal = AbortJournal(aborts_file, "db-1")
-    assert journal.write(ABORTS).result()
-    assert AbortJournal(aborts_file, "db-1").read() == ABORTS
+    journal, kept = AbortJournal(aborts_file, "db-1"), kept_since(time.time())
+    assert journal.write(kept).result()
+    assert AbortJournal(aborts_file, "db-1").read() == left(kept)
     assert stat.S_IMODE(aborts_file.stat().st_mode) == 0o600
     assert journal.write([]).result()
     assert not aborts_file.exists() and AbortJournal(aborts_file, "db-1").read() == []
 
 
-async def test_aborts_of_another_database_or_of_long_ago_stop_no_robot(aborts_file, monkeypatch):
-    AbortJournal(aborts_file, "db-1").write(ABORTS[:1]).result()
-    assert AbortJournal(aborts_file, "db-2").read() == []
-    # Written again it is as old as it was.
-    later = AbortJournal(aborts_file, "db-1")
+async def test_aborts_of_another_database_or_of_long_ago_stop_no_robot(aborts_file):
     now = time.time()
-    monkeypatch.setattr(time, "time", lambda: now + ABORT_VALID_S - 60)
-    later.write(later.read()).result()
-    monkeypatch.setattr(time, "time", lambda: now + ABORT_VALID_S + 60)
-    assert AbortJournal(aborts_file, "db-1").read() == []
+    young, old = (
+        kept_since(now - NOTE_VALID_S + 60, ABORTS[:1]),
+        kept_since(now - NOTE_VALID_S - 1, ABORTS[1:]),
+    )
+    AbortJournal(aborts_file, "db-1").write([*young, *old]).result()
+    assert AbortJournal(aborts_file, "db-1").read() == left(young)
+    assert AbortJournal(aborts_file, "db-2").read() == []
+
+
+def read_to_the_end(journal):
+    """Return what the journal has read, once it has written what follows from that."""
+    found = journal.read()
+    journal._thread.shutdown()
+    return found
+
+
+def test_what_is_dropped_is_in_the_file_no_more(aborts_file, caplog):
+    young, old = kept_since(time.time(), ABORTS[:1]), kept_since(1.0, ABORTS[1:])
+    AbortJournal(aborts_file, "db-1").write([*young, *old]).result()
+    assert read_to_the_end(AbortJournal(aborts_file, "db-1")) == left(young)
+    assert len(caplog.records) == 2
+    assert read_to_the_end(AbortJournal(aborts_file, "db-1")) == left(young)
+    assert len(caplog.records) == 2
+    assert read_to_the_end(AbortJournal(aborts_file, "db-2")) == []
+    assert not aborts_file.exists()
+
+
+def test_what_can_be_understood_stays_in_the_file_beside_what_cannot(aborts_file):
+    kept = kept_since(time.time(), ABORTS[:1])
+    AbortJournal(aborts_file, "db-1").write(kept).result()
+    aborts_file.write_text(aborts_file.read_text(encoding="utf-8")[:-1] + ", 7]", encoding="utf-8")
+    for _ in range(2):
+        assert read_to_the_end(AbortJournal(aborts_file, "db-1")) == left(kept)
+
+
+@pytest.mark.parametrize("known", [(), ("r1",)])
+def test_one_of_a_robot_that_is_gone_is_in_the_file_no_more(aborts_file, known):
+    kept = kept_since(time.time())
+    AbortJournal(aborts_file, "db-1").write(kept).result()
+    journal = AbortJournal(aborts_file, "db-1")
+    unstored = UnstoredAborts(journal)
+    unstored.restore(known.__contains__)
+    journal._thread.shutdown()
+    theirs = [one for one in kept if one.order.robot in known]
+    assert unstored.of(unstored.robots()) == left(theirs)
+    assert AbortJournal(aborts_file, "db-1").read() == left(theirs)
 
 
 GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada", "at": 1e12, "database": "db-1"}'
@@ -323,7 +365,8 @@ GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada", "at": 1e12, "datab
 )
 def test_an_abort_that_cannot_be_understood_hides_no_other_and_is_in_the_log(aborts_file, caplog, bad):
     aborts_file.write_text(f"[{bad}, {GOOD}]", encoding="utf-8")
-    assert AbortJournal(aborts_file, "db-1").read() == [CommandOrder("abort-0001", "r1", Abort(), "Ada")]
+    order = CommandOrder("abort-0001", "r1", Abort(), "Ada")
+    assert AbortJournal(aborts_file, "db-1").read() == left([KeptAbort(order, 1e12)])
     assert "could not be understood" in caplog.text
     assert "look whether robots stand that were sent an Abort" in caplog.text
 
@@ -339,10 +382,10 @@ def test_a_damaged_file_of_aborts_ends_no_gateway_and_is_kept_for_whoever_looks_
 async def test_a_disk_that_takes_no_abort_is_in_the_log_once_and_the_result_says_so(aborts_file, caplog):
     (blocked := aborts_file.with_name(".fleet.db.aborts.new")).mkdir()
     journal = AbortJournal(aborts_file, "db-1")
-    assert [journal.write(ABORTS).result() for _ in range(2)] == [False, False]
+    assert [journal.write(kept_since(1.0)).result() for _ in range(2)] == [False, False]
     assert caplog.text.count("Aborts cannot be noted in") == 1
     blocked.rmdir()
-    assert journal.write(ABORTS).result()
+    assert journal.write(kept_since(1.0)).result()
 
 
 class Notes:
@@ -351,13 +394,10 @@ class Notes:
     def __init__(self, fails=0):
         self.written, self._fails = [], fails
 
-    def read(self):
-        return ABORTS[2:]
-
-    def write(self, orders):
+    def write(self, kept, _settled):
         done = Future()
         done.set_result(len(self.written) >= self._fails)
-        self.written.append(list(orders))
+        self.written.append([one.order for one in kept])
         return done
 
 
