@@ -288,6 +288,17 @@ def listed_names(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
 
 
+def with_abort_sent(error: Exception, robots: Sequence[str]) -> str:
+    """Return the text of ``error``, which refuses what ``robots`` were sent an Abort for, with what to do.
+
+    Where another gateway refused it, its text may say so already.
+    """
+    told = f"{listed_names(robots)} had been sent an Abort by then"
+    if not robots or told in str(error):
+        return str(error)
+    return f"{error}. {told}: look where it stands, then send it on, or abort it"
+
+
 # --- How to install an optional Python package: the remedy in errors about a missing one
 
 _DEBIAN = {

@@ -26,6 +26,7 @@ from ...core.errors import (
     RefusedError,
     StoreError,
     listed_names,
+    with_abort_sent,
 )
 from ...core.json_decoder import decode_json
 from ...core.logs import log_and_continue, log_unforeseen
@@ -249,7 +250,13 @@ class RequestRelay:
             self._paused.update((abort.robot, abort.command) for abort in paused)
             what = "The pause is not stored; an Abort" if paused else "The Abort is not stored; it"
             raise StoreError(f"{error}. {what} was {to}; {LATER}: look whether they stand") from error
-        return [_result_in(answer) for answer in answers]
+        try:
+            return [_result_in(answer) for answer in answers]
+        except (RefusedError, MessageError) as refusal:
+            if not sent:
+                raise
+            refused = MessageError if isinstance(refusal, MessageError) else RefusedError
+            raise refused(with_abort_sent(refusal, sent)) from refusal
 
     def _noted(self, robot: str, request: DeskRequest[Any], operator: str) -> NotedAbort:
         reason: str | None = getattr(request, "reason", None)

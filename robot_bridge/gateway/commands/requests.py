@@ -12,7 +12,14 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
-from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError, listed_names
+from ...core.errors import (
+    DataRefusedError,
+    RefusedError,
+    StoreError,
+    UncertainError,
+    listed_names,
+    with_abort_sent,
+)
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError, check_crs, to_json
 from ...core.messages.commands import (
@@ -133,7 +140,8 @@ class CommandRequests:
 
         An Abort is noted before it is sent, a pause becomes one when it has failed.
 
-        :raises StoreError: with the robots that an Abort was sent to; else as ``storing``.
+        :raises StoreError, RefusedError, MessageError: with the robots that an Abort was sent to; else as
+            ``storing``.
         """
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
@@ -153,11 +161,13 @@ class CommandRequests:
             what = _sent_in_words(sent, is_pause=is_pause, is_lasting=not is_refused)
             kind = UncertainError if is_pause and isinstance(error, UncertainError) else StoreError
             raise kind(f"{error}. {what}") from error
-        except (RefusedError, MessageError):
-            if sent:
-                log.warning("%s: sent an Abort for what was refused then", listed_names(sent))
+        except (RefusedError, MessageError) as error:
             self._commands.release_aborts(orders)
-            raise
+            if not sent:
+                raise
+            log.warning("%s: sent an Abort for what was refused then", listed_names(sent))
+            refused = MessageError if isinstance(error, MessageError) else RefusedError
+            raise refused(with_abort_sent(error, sent)) from error
         self._commands.release_aborts(orders)
         return result
 

@@ -9,11 +9,12 @@ from types import SimpleNamespace
 import pytest
 from sqlalchemy import text
 
-from robot_bridge.core.errors import StoreError
+from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.base import DESK_REQUESTS, Role
 from robot_bridge.core.messages.commands import AbortTask, Send
 from robot_bridge.core.messages.queues import PauseRobot, TakeOver
 from robot_bridge.gateway.cluster import request_relay
+from robot_bridge.gateway.cluster.bus import STOP
 from robot_bridge.gateway.cluster.messages import Exchange, NotedAbort
 from robot_bridge.gateway.cluster.request_relay import RequestRelay
 from robot_bridge.gateway.model.robots import Robots
@@ -102,9 +103,9 @@ def known():
     return robots
 
 
-def relay_by(robots, notes, database):
+def relay_by(robots, notes, database, *buses):
     fleet = SimpleNamespace(me=Member("b", "run"), name="b", database_time=lambda: 5000.0)
-    return RequestRelay(Handlers(), robots, fleet, Exchange("b", b"k" * 32, []), database, notes)
+    return RequestRelay(Handlers(), robots, fleet, Exchange("b", b"k" * 32, buses), database, notes)
 
 
 @pytest.mark.parametrize("asked", sorted(ABORTS))
@@ -125,6 +126,42 @@ async def test_an_abort_of_a_robot_elsewhere_that_cannot_be_stored_is_noted_for_
     await relay.answer(request, "Ada")
     assert notes.noted == [noted]
     assert notes.withdrawn == ([noted.command] if asked == "pause" else [])
+
+
+class SlowOwner:
+    """The bus to a gateway, and the database in which it refuses what it was asked once it has an Abort."""
+
+    name, connected = "slow", True
+
+    def __init__(self, text):
+        self.has_abort, self.answer = (
+            asyncio.Event(),
+            f'{{"error": {{"kind": "RefusedError", "text": "{text}"}}}}',
+        )
+
+    def publish(self, subject, _content):
+        if subject == STOP:
+            self.has_abort.set()
+        return True
+
+    async def run(self, work, *_arguments):
+        if work is gateways.add_requests:
+            return [1]
+        await self.has_abort.wait()
+        return {1: self.answer}
+
+
+SENT = "r1 had been sent an Abort by then: look where it stands, then send it on, or abort it"
+
+
+@pytest.mark.parametrize("text", ["ended", f"ended. {SENT}"])
+async def test_who_is_refused_there_hears_once_that_the_robot_was_sent_an_abort(known, monkeypatch, text):
+    monkeypatch.setattr(request_relay, "STORED_WITHIN_S", 0.0)
+    owner = SlowOwner(text)
+    relay = relay_by(known, Notes(), owner, owner)
+    with pytest.raises(RefusedError) as caught:
+        await relay.answer(ABORTS["abort"], "Ada")
+    assert str(caught.value) == f"ended. {SENT}"
 
 
 def test_what_is_asked_of_one_robot_is_done_by_the_gateway_that_has_it():

@@ -392,11 +392,11 @@ def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
 
 
 @contextlib.contextmanager
-def commands_locked(bridge):
-    """Hold the table of commands, as an administrator's session does that was left in a transaction."""
+def locked(bridge, table):
+    """Hold a table, as an administrator's session does that was left in a transaction."""
     with contextlib.closing(DatabaseClient(bridge.database)) as client:
         client.sql("begin")
-        client.sql("lock table commands in access exclusive mode")
+        client.sql(f"lock table {table} in access exclusive mode")
         yield
         client.sql("rollback")
 
@@ -408,7 +408,7 @@ def abort_in_vain(pair, name):
     desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
     robot.wait_for("SetPosEnd")
     desk.wait_for_step(f"c-{name}", "delivered")
-    with commands_locked(pair.b):
+    with locked(pair.b, "commands"):
         with pytest.raises(RefusedError, match=f"The Abort is not stored; it was sent to {name}"):
             desk.ask("abort", {"command": f"abort-{name}", "robot": name}, 30.0)
         robot.wait_for("Abort")
@@ -447,6 +447,31 @@ def test_an_abort_of_which_no_other_gateway_heard_is_in_the_file_of_its_own(pair
     stored = "select 1 from commands where id = ?"
     wait_until(lambda: pair.b.sql(stored, f"abort-{name}"))
     check_aborted_first(pair, name)
+
+
+def test_a_pause_that_cannot_be_asked_of_a_robots_gateway_is_an_abort_over_the_bus(pair, name):
+    """And one that is stored there, where what is locked keeps only the request from it."""
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    robot.hear("SetPosEnd")
+    desk.wait_for_step(f"c-{name}", "acknowledged")
+    with locked(pair.b, "relayed_requests"):
+        text = (
+            f"The pause is not stored; an Abort was sent over the bus to the gateways of {name}; it is stored"
+        )
+        with pytest.raises(RefusedError, match=text):
+            desk.ask("pause_robot", {"robot": name, "reason": "dog"}, 30.0)
+        abort = robot.wait_for("Abort")
+        assert str(abort["id"]).startswith("abort-")
+        # Which came over each bus.
+        while str(abort["id"]).startswith("abort-"):
+            abort = robot.wait_for("Abort")
+        robot.say(abort["id"])
+    robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
+    desk.wait_for_step(f"c-{name}", "aborted")
+    stored = [c for c in desk.commands.values() if (c["robot"], c["op"]) == (name, "Abort")]
+    assert [(c["operator"], c["steps"][0]["reason"]) for c in stored] == [("Ada", "paused: dog")]
 
 
 def test_robots_of_two_gateways_are_aborted_together(pair, name):

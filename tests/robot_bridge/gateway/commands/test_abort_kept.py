@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 from types import SimpleNamespace
 
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.robots import Abort, SetPath
 from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.gateway.commands import requests
 from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.persistence import KeptAbort, insert_commands
 from robot_bridge.gateway.commands.service import SENT_ON_S
@@ -235,3 +238,30 @@ async def test_one_of_a_robot_that_another_gateway_has_is_left_to_that(driving):
     for robot in ("r1", "r2", "r9"):
         leave(driving, robot=robot)
     assert book._unstored.robots() == ["r2"]
+
+
+@pytest.mark.parametrize("error", [RefusedError, MessageError])
+@pytest.mark.parametrize("is_pause", [False, True], ids=["abort", "pause"])
+async def test_who_is_refused_hears_which_robots_were_sent_an_abort_by_then(
+    driving, monkeypatch, is_pause, error
+):
+    monkeypatch.setattr(requests, "STORED_WITHIN", 0.0)
+    sent = asyncio.Event()
+    driving.fleet.orders.reach(lambda robot, _id: robot == "r1" and not sent.set())
+
+    async def refuse():
+        await sent.wait()
+        raise error("its task has ended")
+
+    aborts = [CommandOrder(f"abort-{robot}", robot, Abort(), "Ada") for robot in ("r1", "r2")]
+    text = "its task has ended. r1 had been sent an Abort by then: look where it stands, then send it on, or"
+    with pytest.raises(error, match=text):
+        await driving.fleet.orders.send_if_unstored(aborts, asyncio.create_task(refuse()), is_pause=is_pause)
+    await driving.fleet.save()
+    assert driving.waiting("r1") == driving.waiting("r2") == []
+
+
+async def test_who_is_refused_at_once_hears_of_none(driving):
+    with pytest.raises(RefusedError) as caught:
+        await driving.fleet.orders.abort(AbortTask("command-abort", aborts="command-none"), "Ada")
+    assert "sent an Abort" not in str(caught.value)

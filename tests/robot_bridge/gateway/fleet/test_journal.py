@@ -388,6 +388,23 @@ async def test_a_disk_that_takes_no_abort_is_in_the_log_once_and_the_result_says
     assert journal.write(kept_since(1.0)).result()
 
 
+async def test_a_full_disk_takes_the_aborts_of_a_fleet_and_says_so_where_it_does_not(tmp_path, caplog):
+    many = kept_since(time.time(), [ABORTS[0]] * 1300)
+    try:
+        with Disk(tmp_path / "disk", megabytes=2) as disk:
+            journal = AbortJournal(disk.folder / "fleet.db.aborts", "db-1")
+            journal.check()
+            disk.fill()
+            for kept in (many[:1], many):
+                assert journal.write(kept).result()
+                assert journal.read() == left(kept)
+            assert not journal.write(many * 2).result()
+            assert "Aborts cannot be noted in" in caplog.text and "No space left" in caplog.text
+            assert journal.read() == left(many)
+    except StageError as error:
+        pytest.skip(str(error))
+
+
 class Notes:
     """Notes in memory, of which the first ``fails`` are not written."""
 

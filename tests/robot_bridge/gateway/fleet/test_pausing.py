@@ -361,6 +361,22 @@ async def test_a_pause_that_is_lost_of_a_robot_that_does_nothing_becomes_an_abor
     assert await line.sent() == ["Abort"]
 
 
+@pytest.mark.parametrize("again", [True, False], ids=["asked for again", "left"])
+@pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
+async def test_a_pause_whose_queue_is_stored_in_doubt_holds_the_queue(line, lose, done, again):
+    """Its robot does nothing yet. An Abort makes sure, unless the pause is asked for once more."""
+    await line.queues.set(SetQueue("r1", 0, [task("a")]), "Ada")
+    lose(line.yard, None, done)
+    with pytest.raises(UncertainError, match=re.escape(NOT_STORED)):
+        await line.yard.fleet.pauses.pause(PauseRobot("r1"), "Eve")
+    if again:
+        await pause(line)
+    await line.yard.fleet.save()
+    await line.advance()
+    assert (await line.report()).state.value == "paused"
+    assert await line.sent() == ([] if again else ["Abort"])
+
+
 async def test_a_pause_of_a_task_that_ends_before_its_abort_is_stored_holds_the_queue(line, lose):
     await line.set(task("a"), task("b"))
     await line.yard.acknowledge_all()
