@@ -16,7 +16,7 @@ from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.storage import singleton_lock
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address, run_once
 from robot_bridge.gateway.storage.repositories import requests
-from robot_bridge.gateway.storage.repositories.metadata import fact
+from robot_bridge.gateway.storage.repositories.metadata import database_id, fact, renew_id
 from robot_bridge.gateway.storage.schema import bridge, metadata
 from robot_bridge.gateway.storage.singleton_lock import (
     MessageNote,
@@ -251,3 +251,70 @@ async def test_a_state_folder_that_cannot_be_written_keeps_no_gateway_from_its_w
         assert "counts as another one" not in caplog.text
     finally:
         await database.close()
+
+
+@pytest.fixture
+def file_address(new_database):
+    return read_address(new_database("sqlite"))
+
+
+@pytest.fixture
+async def noting(file_address):
+    """A database that has given out one message."""
+    database = Database(file_address)
+    await database.run(requests.add, "bot", Abort())
+    yield database
+    await database.close()
+
+
+def given_out(folder, newest, **other):
+    """Have what is noted in a folder say that more messages were given out."""
+    (file,) = folder.iterdir()
+    file.write_text(json.dumps({**json.loads(file.read_text()), "newest_message": newest, **other}))
+    return file
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("a", None), (None, "b")])
+async def test_what_another_gateway_of_this_computer_has_noted_counts_too(noting, tmp_path, caplog, names):
+    await MessageNote(noting, tmp_path, names[0]).check()
+    given_out(tmp_path, 100)
+    await MessageNote(noting, tmp_path, names[1]).check()
+    assert "the newest message that it knows is 1, and 100 was given out" in caplog.text
+
+
+async def test_what_is_noted_of_another_database_does_not(noting, tmp_path, caplog):
+    await MessageNote(noting, tmp_path).check()
+    given_out(tmp_path, 100, database="another")
+    await MessageNote(noting, tmp_path).check()
+    assert "counts as another one" not in caplog.text
+
+
+async def test_of_two_gateways_that_find_an_older_state_at_one_moment_one_makes_it_another_database(
+    noting, tmp_path, caplog, monkeypatch
+):
+    first, second = MessageNote(noting, tmp_path, "a"), MessageNote(noting, tmp_path, "b")
+    await first.check()
+    given_out(tmp_path, 100)
+    renew = second._renew
+
+    async def renew_after_the_other(*counts):
+        await first.check()
+        await renew(*counts)
+
+    monkeypatch.setattr(second, "_renew", renew_after_the_other)
+    await second.check()
+    assert caplog.text.count("counts as another one") == 1
+    assert second._id == first._id == await noting.run(database_id)
+
+
+async def test_a_gateway_that_ends_notes_nothing_of_a_database_that_is_another_one_by_then(noting, tmp_path):
+    note = MessageNote(noting, tmp_path)
+    await note.check()
+    (file,) = tmp_path.iterdir()
+    await noting.run(requests.add, "bot", Abort())
+    await note.close(10.0)
+    assert json.loads(file.read_text())["newest_message"] == 2
+    await noting.run(renew_id, await noting.run(database_id))
+    await noting.run(requests.add, "bot", Abort())
+    await note.close(10.0)
+    assert json.loads(file.read_text())["newest_message"] == 2
