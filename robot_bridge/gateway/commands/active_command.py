@@ -1,17 +1,22 @@
-"""Active commands: states of each, effects of acknowledgements, index by robot; no I/O."""
+"""Active commands: states of each, effects of acknowledgements, index by robot; Aborts not stored; no I/O."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, KeysView, Mapping
+import logging
+import time
+from collections.abc import Callable, Container, Iterable, Iterator, KeysView, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ...core.geometry import Polyline
 from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport, CommandState, CommandStep
 from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import Arrival, PathArrival, arrival_judge
+
+log = logging.getLogger(__name__)
 
 # --- States of a command as reported: queued → delivered → acknowledged → reached, or another end ---
 
@@ -436,3 +441,151 @@ class ActiveCommands:
     def note_progress(self, driven: Mapping[str, float]) -> None:
         """Record the metres driven as stored."""
         self._stored_driven.update({id: metres for id, metres in driven.items() if id in self._stored_driven})
+
+
+# --- Aborts that could not be stored, kept until they are ---
+
+
+class KeptAbort(NamedTuple):
+    """An Abort that is not stored, kept since ``at`` (wall clock, s).
+
+    ``is_left``: it comes from another gateway, or from one that ended. Its robot may have been sent on since.
+    """
+
+    order: CommandOrder
+    at: float
+    is_left: bool = False
+
+
+class AbortNotes(Protocol):
+    """Aborts noted where a gateway that is killed does not lose them."""
+
+    def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool] | None:
+        """Write what this gateway keeps, in the background; the result is whether that was done.
+
+        The Aborts with the ids ``settled`` are stored, or void. What is in neither may be kept by another
+        gateway.
+        """
+
+    def read(self) -> list[KeptAbort]:
+        """Return the Aborts that an earlier gateway left for this one alone."""
+
+    def left_for(self, robots: Iterable[str]) -> list[KeptAbort]:
+        """Return the Aborts of ``robots`` that were left for the gateway that has them."""
+
+
+class UnstoredAborts:
+    """The newest unstored Abort of each robot, and of each single command to be aborted.
+
+    The Abort of an emergency stop is among them once the stop is over: before, the stop keeps it. They are
+    written to ``notes``, if given.
+    """
+
+    def __init__(self, notes: AbortNotes | None = None) -> None:
+        self._kept: dict[str, dict[str | None, KeptAbort]] = {}
+        self._notes = notes
+        self._settled: list[str] = []
+        self._is_noted = True
+        self._writing: Future[bool] | None = None
+
+    def restore(self, is_known: Callable[[str], bool]) -> None:
+        """Keep the Aborts of known robots that an earlier gateway left, drop the others; reads a file."""
+        for left in [] if self._notes is None else self._notes.read():
+            log.warning("robot %r: Abort %s was not stored", left.order.robot, left.order.command)
+            if is_known(left.order.robot):
+                self._keep(left)
+            else:
+                # It would meet whoever comes by that name.
+                self._settle(left.order.command)
+        self.write_notes()
+
+    def keep(self, orders: Iterable[CommandOrder]) -> Future[bool] | None:
+        """Keep the Aborts among ``orders``; return the writing of the notes, if there are any."""
+        for order in orders:
+            if isinstance(order.message, Abort):
+                self._keep(KeptAbort(order, time.time()))
+        self.write_notes()
+        return self._writing
+
+    def keep_left(self, left: Iterable[KeptAbort]) -> None:
+        """Keep Aborts that are noted already, unless a newer one is kept in their place."""
+        for one in left:
+            mine = self._kept.get(one.order.robot, {}).get(one.order.aborts)
+            if mine is not None and mine.order.command == one.order.command:
+                continue
+            if mine is None or mine.at < one.at:
+                self._keep(one)
+            else:
+                self._settle(one.order.command)
+
+    def keep_left_for(self, robots: Iterable[str]) -> None:
+        """Keep the Aborts of ``robots`` that were left for the gateway that has them."""
+        if self._notes is not None:
+            self.keep_left(self._notes.left_for(robots))
+
+    def write_notes(self) -> None:
+        """Have the notes say what is kept, unless they do; what could not be written is written again."""
+        writing = self._writing
+        has_failed = writing is not None and writing.done() and not writing.result()
+        if self._notes is not None and (has_failed or not self._is_noted):
+            settled, self._settled = self._settled, []
+            self._writing = self._notes.write(self.of(self._kept), settled)
+        self._is_noted = True
+
+    def of(self, robots: Iterable[str]) -> list[KeptAbort]:
+        """Return the Aborts of ``robots``."""
+        return [kept for robot in robots for kept in self._kept.get(robot, {}).values()]
+
+    def robots(self) -> list[str]:
+        """Return the names of the robots with unstored Aborts."""
+        return list(self._kept)
+
+    def postpone(self, robot: str) -> None:
+        """Move a robot to the end: others must not wait while its Aborts cannot be stored."""
+        self._kept[robot] = self._kept.pop(robot)
+
+    def drop(self, robot: str) -> None:
+        """Leave the Aborts of a robot to the gateway that has it; noted by the next :meth:`write_notes`."""
+        if self._kept.pop(robot, None):
+            self._is_noted = False
+
+    def end(self, robot: str) -> None:
+        """Forget the Aborts of a robot that is removed; noted by the next :meth:`write_notes`."""
+        self.keep_left_for([robot])
+        for kept in self._kept.pop(robot, {}).values():
+            self._settle(kept.order.command)
+
+    def discard(self, order: CommandOrder) -> None:
+        """Forget an Abort, unless a newer one is kept in its place; noted by the next :meth:`write_notes`.
+
+        If the gateway is killed before that, the next one finds its id stored, and nothing changes.
+        """
+        mine = self._kept.get(order.robot, {})
+        kept = mine.get(order.aborts)
+        if kept is not None and kept.order is order:
+            del mine[order.aborts]
+            self._settle(order.command)
+        if not mine:
+            self._kept.pop(order.robot, None)
+
+    def discard_settled(self, ids: Container[str]) -> None:
+        """Forget the Aborts with these ids: another gateway has stored them, or found them void."""
+        for kept in self.of(self.robots()):
+            if kept.order.command in ids:
+                self.discard(kept.order)
+
+    def _keep(self, kept: KeptAbort) -> None:
+        order = kept.order
+        mine = self._kept.setdefault(order.robot, {})
+        before = mine.get(order.aborts)
+        if before is not None and before.order.command == order.command:
+            kept = kept._replace(at=before.at)
+        elif before is not None:
+            self._settle(before.order.command)
+        mine[order.aborts] = kept
+        self._is_noted = False
+
+    def _settle(self, id: str) -> None:
+        if self._notes is not None:
+            self._settled.append(id)
+        self._is_noted = False

@@ -37,7 +37,6 @@ from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from . import active_command, persistence
 from .active_command import ABORTED, GATEWAY, ActiveCommand, ActiveCommands, CommandOrder, Recall, given_up_by
-from .persistence import KeptAbort
 from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
 
 log = logging.getLogger(__name__)
@@ -73,7 +72,7 @@ class CommandService(CommandReader):
         waiting: WaitingRobots,
         events: EventBus,
         fence: OwnerFence = SOLE_FENCE,
-        notes: persistence.AbortNotes | None = None,
+        notes: active_command.AbortNotes | None = None,
     ) -> None:
         super().__init__(ActiveCommands())
         self.drafting = CommandValidator(self._open, robots, rules, waiting)
@@ -87,7 +86,7 @@ class CommandService(CommandReader):
         self._turns = persistence.NamedLocks()
         self._sequences = persistence.RobotSequences(self)
         self._late: set[tuple[str, int]] = set()
-        self._unstored = persistence.UnstoredAborts(notes)
+        self._unstored = active_command.UnstoredAborts(notes)
 
     def set_tolerance(self, tolerance: float) -> None:
         """Set the metres within which a target counts as reached."""
@@ -131,7 +130,7 @@ class CommandService(CommandReader):
         for order in aborts:
             self._unstored.discard(order)
 
-    def keep_left(self, left: Iterable[KeptAbort]) -> None:
+    def keep_left(self, left: Iterable[active_command.KeptAbort]) -> None:
         """Store those Aborts that another gateway left of robots of this one, before any other message."""
         self._unstored.keep_left(
             one for one in left if one.order.robot in self._robots and self._fence.owns(one.order.robot)
@@ -366,7 +365,7 @@ class CommandService(CommandReader):
                     log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
             self._unstored.discard(order)
 
-    async def _check_not_sent_on(self, kept: KeptAbort) -> None:
+    async def _check_not_sent_on(self, kept: active_command.KeptAbort) -> None:
         """Raise RefusedError where the robot got a command long after an Abort that was left; StoreError."""
         order = kept.order
         for newest in await self._database.run(commands.newest, order.robot, 1):

@@ -31,16 +31,11 @@ from ...core.errors import (
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
-from ...core.messages.base import (
-    MessageError,
-    check_command_id,
-    check_expires_in,
-    check_robot_name,
-)
+from ...core.messages.base import MessageError, check_command_id, check_expires_in, check_robot_name
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..cluster.stop_relay import NOTE_VALID_S
-from ..commands.active_command import CommandOrder
-from ..commands.persistence import KeptAbort, write_bare_aborts
+from ..commands.active_command import CommandOrder, KeptAbort
+from ..commands.persistence import write_bare_aborts
 from ..commands.service import CommandService
 from ..storage.database import Database, start_task
 from ..storage.dialects import sqlite_file_of

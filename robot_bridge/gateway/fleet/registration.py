@@ -21,8 +21,7 @@ from ..cluster.membership import Membership
 from ..cluster.messages import Exchange, NotedAbort
 from ..cluster.ownership import NameClaims, Ownership
 from ..cluster.stop_relay import AbortRelay
-from ..commands.active_command import CommandOrder
-from ..commands.persistence import KeptAbort
+from ..commands.active_command import CommandOrder, KeptAbort
 from ..commands.service import CommandService
 from ..model.events import EventBus, RobotClaimed, RobotLeft, RobotsTakenUp, handles
 from ..model.robots import AWAY, Robot, Robots

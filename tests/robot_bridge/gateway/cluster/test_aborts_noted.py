@@ -21,8 +21,7 @@ from robot_bridge.gateway.cluster.messages import (
     Wake,
 )
 from robot_bridge.gateway.cluster.stop_relay import AGAIN_S, ASKED_S, AT_ONCE, NOTE_VALID_S
-from robot_bridge.gateway.commands.active_command import CommandOrder
-from robot_bridge.gateway.commands.persistence import KeptAbort, UnstoredAborts
+from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort, UnstoredAborts
 from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal
 from robot_bridge.gateway.fleet.registration import FleetAborts
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.messages.robots import Abort, SetPosEnd
-from robot_bridge.gateway.commands.active_command import CommandOrder
-from robot_bridge.gateway.commands.persistence import KeptAbort, UnstoredAborts
+from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort, UnstoredAborts
 
 
 def abort(id, robot="r1", **how):

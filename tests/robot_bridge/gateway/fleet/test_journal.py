@@ -18,8 +18,7 @@ from sqlalchemy import make_url
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.cluster.stop_relay import NOTE_VALID_S
-from robot_bridge.gateway.commands.active_command import CommandOrder
-from robot_bridge.gateway.commands.persistence import KeptAbort, UnstoredAborts
+from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort, UnstoredAborts
 from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.errors import StageError
