@@ -417,6 +417,9 @@ class RobotColumns:
 
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
         """Return the positions of robots that changed after ``since``, except of gateways ``without``."""
+        if without and self._gateways.keys() <= {*without}:
+            # As usual in a fleet, where each gateway judges its own.
+            return RobotPlaces([], self._numbers[:, :0], self._states[:0], self._flags[:0])
         rows, names = self._everybody() if since < 0 else (np.flatnonzero(self._revisions > since), None)
         if without:
             left_out = [self._owner(gateway) for gateway in without]

@@ -493,7 +493,8 @@ class Robots:
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
         """Return the positions of all robots that changed after revision ``since``, those of this gateway
         first, without the robots of the other gateways ``without``."""
-        return self.own_places(since).join(self.places_elsewhere(since, without))
+        own, elsewhere = self.own_places(since), self.places_elsewhere(since, without)
+        return own.join(elsewhere) if elsewhere.names else own
 
     def only_seen(self) -> list[Robot]:
         """Return the robots without any ability."""

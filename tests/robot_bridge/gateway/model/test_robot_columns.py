@@ -308,3 +308,16 @@ def test_a_robot_that_goes_elsewhere_is_asked_for_where_it_was_named_before_that
     assert robots.observe_elsewhere(numbered([3], ["mine"], [at(3)]))
     assert robots.observe_elsewhere(numbered([3], [], [at(4)]))
     assert robots.pose("mine").x == 4.0
+
+
+def test_robots_of_gateways_that_are_left_out_are_left_out(robots):
+    robots.observe_elsewhere(told(["c"], by="north"))
+    for without, names in (
+        ((), ["mine", "theirs", "c"]),
+        (["south"], ["mine", "c"]),
+        (["south", "west"], ["mine", "c"]),
+        (["south", "north"], ["mine"]),
+    ):
+        places = robots.places(without=without)
+        assert places.names == names
+        assert places.table.shape[1] == len(places.states) == len(places.flags) == len(names)
