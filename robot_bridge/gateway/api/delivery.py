@@ -9,12 +9,12 @@ import logging
 from collections.abc import Coroutine, Sequence
 from contextlib import AbstractAsyncContextManager
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from websockets.exceptions import ConnectionClosed
 
 from ...core.clock import steady_time
-from ...core.errors import DataRefusedError, StoreError
+from ...core.errors import LockedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError, to_json
 from ...core.messages.robots import PAYLOADS, Abort, SetMap
@@ -24,9 +24,15 @@ from ..fleet.service import Fleet
 from ..monitoring import BackgroundTasks
 from ..storage.repositories.requests import AnswerRow, Outbox
 
+T = TypeVar("T")
+
 
 class Interruptible(Protocol):
     """A connection on which a stop does not wait for a long message to its end."""
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a message would have to wait for another one."""
 
     async def send(self, frame: str) -> None:
         """Write a frame without waiting for a turn; raises ConnectionClosed."""
@@ -105,31 +111,43 @@ LARGE = 100_000
 PIECE = 3 << 16
 """bytes encoded as base64 at once; a multiple of three, so that pieces can be concatenated."""
 CUT_AGAIN_S = 0.05
-"""seconds until it is looked whether a map that was begun keeps an Abort waiting."""
+"""seconds until a message that was just begun is cut for an Abort."""
 ABORT, MAP = Abort.__name__, SetMap.__name__
 
 
 @dataclass
 class _SentMessages:
-    """What a robot was sent on one connection: all up to ``last`` and ``last_urgent``, and later Aborts.
+    """What a robot was sent on one connection.
 
-    ``sending`` is the message that was begun last.
+    That is all up to ``last``, of urgent messages up to ``last_urgent``, and ``aborts`` above those: an Abort
+    is sent before older messages. ``newest_abort`` is the id of the newest one.
     """
 
     last: int = 0
     last_urgent: int = 0
-    sending: int = 0
     aborts: set[int] = field(default_factory=set)
+    newest_abort: int = 0
 
     def record(self, row: AnswerRow) -> None:
-        """Record a sent message; an Abort may be sent before older ones."""
+        """Record a message that was sent, or left out."""
+        if row.op == ABORT:
+            self.newest_abort = max(self.newest_abort, row.id)
         if row.urgent:
             self.last_urgent = row.id
         elif row.op == ABORT:
             self.aborts.add(row.id)
         else:
             self.last = row.id
-            self.aborts = {abort for abort in self.aborts if abort > row.id}
+
+    def unsent(self, rows: Sequence[AnswerRow]) -> list[AnswerRow]:
+        """Return those of the ``rows`` above ``last`` that were not sent, Aborts first."""
+        self.aborts &= {row.id for row in rows}
+        left = [row for row in rows if row.id not in self.aborts]
+        return sorted(left, key=lambda row: row.op != ABORT)
+
+    def is_revoked(self, row: AnswerRow) -> bool:
+        """Return whether ``row`` moves the robot, and is older than an Abort that it was sent."""
+        return row.op in HELD_BACK and row.id < self.newest_abort
 
 
 class Delivery:
@@ -208,35 +226,51 @@ class Delivery:
         It is tried again every second, for each robot.
         """
         link = f"link {self._channel.name}:"
-        whose = ("robot", repr(self._robot)) if isinstance(error, DataRefusedError) else ("database",)
-        self._fleet.repeated.warn(log, (link, *whose, "outbox"), f"{link} robot {self._robot!r}: {error}")
+        of_all = type(error) is StoreError or isinstance(error, LockedError)
+        cause = ("database",) if of_all else ("robot", repr(self._robot))
+        self._fleet.repeated.warn(log, (link, *cause, "outbox"), f"{link} robot {self._robot!r}: {error}")
+
+    async def send_result(self, frame: str) -> None:
+        """Send the result of a Ready, behind which the outbox is delivered: no Abort waits for it.
+
+        :raises ConnectionClosed: when the connection is gone.
+        """
+        if not self._channel.is_busy:
+            await self._channel.send(frame)
+            return
+        begun = asyncio.Event()
+        begun.set()
+        # An Abort may wait already.
+        self._fleet.outboxes.event(self._robot).set()
+        await self._watch(self._channel.send(frame), begun, self._sent)
 
     async def _send_waiting(self, sent: _SentMessages) -> bool:
         """Send the messages that are not in ``sent``; return false when what was read is out of date."""
-        stops = self._stops
-        for row in aborts_first(await self._unsent(sent)):
+        stops, event = self._stops, self._fleet.outboxes.event(self._robot)
+        for row in sent.unsent(await self._fleet.outboxes.outbox(self._robot, sent.last, sent.last_urgent)):
             # Recorded first: it must never be withdrawn as not yet sent. All else is recorded afterwards, so
             # that no Abort waits for the database, nor behind a message that does.
             drives = row.op in HELD_BACK
             checked_at = steady_time()
-            is_due = not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
+            is_due = not sent.is_revoked(row) and (
+                not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
+            )
             if self._stops != stops:
                 return False
-            send = self._send_map if row.op == MAP else self._send_row
-            if is_due and not await send(row, stops, checked_at, sent):
-                return False
+            if is_due:
+                begun = asyncio.Event()
+                sending = self._send(row, stops, checked_at, begun)
+                may_wait = row.op == MAP or (row.op != ABORT and self._channel.is_busy)
+                if not await (self._watch(sending, begun, sent) if may_wait else sending):
+                    return False
             sent.record(row)
             if not drives:
                 await self._fleet.outboxes.delivered([row.id])
-            if row.op == MAP and self._fleet.outboxes.event(self._robot).is_set():
+            if row.op == MAP and event.is_set():
                 return False
         return True
 
-    async def _unsent(self, sent: _SentMessages) -> list[AnswerRow]:
-        rows = await self._fleet.outboxes.outbox(self._robot, sent.last, sent.last_urgent)
-        return [row for row in rows if row.id not in sent.aborts]
-
-    async def _send_row(self, row: AnswerRow, stops: int, checked_at: float, sent: _SentMessages) -> bool:
+    async def _send(self, row: AnswerRow, stops: int, checked_at: float, begun: asyncio.Event) -> bool:
         """Send a message in its turn; return false, with nothing sent, when it must not be sent any more.
 
         :raises ConnectionClosed: when the connection is gone.
@@ -249,17 +283,22 @@ class Delivery:
                 return False
             if row.op in HELD_BACK and not self._fleet.outboxes.may_send(self._robot, checked_at):
                 return False
+            begun.set()
             if row.op == ABORT:
                 await send_stop(self._channel, frame)
             else:
-                sent.sending = row.id
                 await self._channel.send(frame)
         return True
 
-    async def _send_map(self, row: AnswerRow, stops: int, checked_at: float, sent: _SentMessages) -> bool:
-        """As :meth:`_send_row`; an Abort waits neither until the map is made, nor for its turn or its end."""
+    async def _watch(
+        self, work: Coroutine[Any, Any, T], begun: asyncio.Event, sent: _SentMessages
+    ) -> T | None:
+        """Await the sending of a message; an Abort for the robot waits neither for its turn nor for its end.
+
+        Returns None, with nothing sent, if an Abort came before it was ``begun``.
+        """
         event, has_news = self._fleet.outboxes.event(self._robot), False
-        sending = asyncio.create_task(self._send_row(row, stops, checked_at, sent))
+        sending = asyncio.create_task(work)
         woken = asyncio.create_task(event.wait())
         try:
             while not sending.done():
@@ -271,8 +310,8 @@ class Delivery:
                 woken = asyncio.create_task(event.wait())
                 while not sending.done() and await self._has_abort(sent):
                     await self._channel.cut_if_busy()
-                    if sent.sending != row.id:
-                        return False
+                    if not begun.is_set():
+                        return None
                     await asyncio.wait((sending,), timeout=CUT_AGAIN_S)
             return await sending
         finally:
@@ -282,10 +321,13 @@ class Delivery:
                 event.set()
 
     async def _has_abort(self, sent: _SentMessages) -> bool:
+        reader = self._robot, sent.last, sent.last_urgent
         try:
-            return any(row.op == ABORT for row in await self._unsent(sent))
+            return not sent.aborts.issuperset(await self._fleet.outboxes.waiting_aborts(*reader))
         except StoreError:
-            # The next read of the outbox logs it. An Abort that is not stored comes without the outbox.
+            # The next read of the outbox logs it.
+            loop, event = asyncio.get_running_loop(), self._fleet.outboxes.event(self._robot)
+            loop.call_later(RETRY_AFTER, event.set)
             return False
 
     async def _framed(self, row: AnswerRow) -> str | None:
@@ -313,20 +355,6 @@ class Delivery:
             who = self._channel.name, row.id, self._robot
             log.error("link %s: message %d for robot %r: %s", *who, error)
             return None
-
-
-def aborts_first(rows: Sequence[AnswerRow]) -> list[AnswerRow]:
-    """Return the messages in the order in which they are sent: an Abort does not wait for maps before it.
-
-    It stays behind what moves the robot: sent after the Abort, that would be carried out.
-    """
-    ordered: list[AnswerRow] = []
-    for row in rows:
-        at = len(ordered)
-        while row.op == ABORT and at and ordered[at - 1].op == MAP:
-            at -= 1
-        ordered.insert(at, row)
-    return ordered
 
 
 def _params(row: AnswerRow) -> dict[str, Any]:

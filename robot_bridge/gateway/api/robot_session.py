@@ -221,9 +221,11 @@ class RobotSession:
             text = self._log_unforeseen(call.method, self._who)
             await channel.send(channel.error(call.id, jsonrpc.INTERNAL_ERROR, text))
             return
+        begins = call.method == Ready.__name__ and outcome.admitted
         if call.id is not None:
-            await channel.send(channel.result(call.id, to_json(self._acknowledgement(outcome))))
-        if call.method == Ready.__name__ and outcome.admitted:
+            send = self._delivery.send_result if begins else channel.send
+            await send(channel.result(call.id, to_json(self._acknowledgement(outcome))))
+        if begins:
             self._delivery.begin()
 
     def _acknowledgement(self, outcome: RequestOutcome) -> OpAck:
@@ -348,8 +350,13 @@ class RobotChannel:
         """Write a frame now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a long message is being sent."""
+        return self._connection.is_busy
+
     async def cut_if_busy(self) -> None:
-        """Wait for the end of a long message, before a stop; cut the connection if that takes too long."""
+        """Wait for the end of a long message, or cut the connection."""
         await self._connection.cut_if_busy()
 
     async def answers(self) -> bool:

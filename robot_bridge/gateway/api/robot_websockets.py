@@ -56,6 +56,8 @@ AT_ONCE = 50
 AFTER_CUT_S = 2.0
 """seconds in which a link that was cut for a stop has to say Ready for one robot after another, before large
 messages are sent: behind those a stop would have to cut it again."""
+LONGEST_DELAY_S = 10.0
+"""seconds after which they are sent, whoever comes."""
 MOST_CALLS = 20
 """requests to a link that wait for its answer."""
 
@@ -86,10 +88,8 @@ class LinkConnection:
         self._places: dict[str, LinkedRobotChannel] = {}
         self._robots = gate.robots_of_link(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
-        self._large_from = 0.0
-        """time of the loop before which no large message is sent; 0 for at any time."""
-        self.is_cut = False
-        """Whether it was cut for a stop."""
+        self._large_from = self._large_from_at_last = 0.0
+        """times of the loop before which no large message is sent, and to which that may be put off."""
         self._tasks = BackgroundTasks()
         self._numbers = itertools.count(1)
         self._pending_calls: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
@@ -101,8 +101,9 @@ class LinkConnection:
         return [place.session for place in self._places.values()]
 
     def delay_large(self) -> None:
-        """Send no large message until a moment after the last robot's first Ready."""
-        self._large_from = asyncio.get_running_loop().time() + AFTER_CUT_S
+        """Send no large message until the last robot has said Ready for :data:`AFTER_CUT_S`."""
+        now = asyncio.get_running_loop().time()
+        self._large_from, self._large_from_at_last = now + AFTER_CUT_S, now + LONGEST_DELAY_S
 
     async def run(self) -> None:
         """Serve the connection to its end."""
@@ -201,9 +202,14 @@ class LinkConnection:
         """Write a message now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a message is being sent, or waits for its turn."""
+        return self._connection.is_busy or self._turn.locked()
+
     async def cut_if_busy(self) -> None:
-        """Wait for the end of a long message, before a stop; cut the connection if that takes too long."""
-        self.is_cut |= await self._connection.cut_if_busy()
+        """Wait for the end of a long message, or cut the connection."""
+        await self._connection.cut_if_busy()
 
     async def answers(self) -> bool:
         """Return whether the link answers a ping within a second."""
@@ -317,8 +323,7 @@ class LinkConnection:
         if len(self._places) >= limits.robots:
             raise BusyError(f"link {self.name} speaks for {limits.robots} robots; there is room for no more")
         place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._holders)
-        if self._large_from:
-            self.delay_large()
+        self._large_from = min(asyncio.get_running_loop().time() + AFTER_CUT_S, self._large_from_at_last)
         return place
 
     async def _receive_frame(self, frame: bytes) -> None:
@@ -433,7 +438,7 @@ class WebSocketInterface:
             await link.run()
         finally:
             self._links.discard(link)
-            (self._cut_links.add if link.is_cut else self._cut_links.discard)(link.name)
+            (self._cut_links.add if connection.was_cut else self._cut_links.discard)(link.name)
             for session in link.sessions():
                 self._holders.release(session)
 

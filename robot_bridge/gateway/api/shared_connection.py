@@ -122,8 +122,13 @@ class LinkedRobotChannel:
         """Write a frame now; return false if that is impossible."""
         return self._shared.send_at_once(frame)
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a message of any robot of the link is being sent, or waits for its turn."""
+        return self._shared.is_busy
+
     async def cut_if_busy(self) -> None:
-        """Wait for the end of a long message of any robot of the link, before a stop."""
+        """Wait for the end of a long message of any robot of the link, or cut the connection."""
         await self._shared.cut_if_busy()
 
     async def answers(self) -> bool:

@@ -245,6 +245,8 @@ class ClientConnection(ServerConnection):
         self._expelled = False
         self.is_gone = False
         """Whether the connection has ended; it is not admitted after that."""
+        self.was_cut = False
+        """Whether it was cut for a stop."""
         self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = RateLimit(1.0, 1.0)
         self.short_cut = FastPath()
@@ -322,8 +324,13 @@ class ClientConnection(ServerConnection):
             for text in texts:
                 await self.send(text)
 
-    async def cut_if_busy(self) -> bool:
-        """Wait for the end of a long message that is being sent, before a stop; return whether it was cut.
+    @property
+    def is_busy(self) -> bool:
+        """Whether a long message is being sent."""
+        return self.send_in_progress is not None
+
+    async def cut_if_busy(self) -> None:
+        """Wait for the end of a long message that is being sent, before a stop.
 
         Nothing can be sent between its pieces, and on a slow line it takes minutes: after
         :data:`STOP_PATIENCE_S` the connection is cut. The client connects again, and hears the stop first.
@@ -333,7 +340,10 @@ class ClientConnection(ServerConnection):
             await asyncio.wait([message], timeout=max(0.0, until - self.loop.time()))
             if message.done() or self.loop.time() < until:
                 continue
+            if self.transport.is_closing():
+                return
             if self.transport.get_write_buffer_size() > 0:
+                self.was_cut = True
                 log.warning(
                     "%s from %s is cut off: a stop would wait for the rest of a long message on its slow "
                     "line; it is sent the stop when it connects again",
@@ -341,10 +351,9 @@ class ClientConnection(ServerConnection):
                     self.address,
                 )
                 self.transport.abort()
-                return True
-            # The line is fast, and this process slow.
+                return
+            # All that was written is on its way: the line is fast, and this process slow.
             until = self.loop.time() + STOP_PATIENCE_S
-        return False
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, with or without the client's close; further messages are ignored."""

@@ -202,6 +202,10 @@ class RobotOutboxes:
             rows = await self._database.read(answers.read_outbox, *reader)
         return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
 
+    async def waiting_aborts(self, robot: str, after: int, after_urgent: int) -> set[int]:
+        """Return the ids of the Aborts among the robot's messages that :meth:`outbox` would return."""
+        return await self._database.read(answers.waiting_aborts, robot, after, after_urgent)
+
     async def mark_sending(self, robot: str, id: int) -> bool:
         """Record that message ``id`` of SA is about to be sent to its robot; false if it must not be."""
         return await self._commands.mark_sending(robot, id)

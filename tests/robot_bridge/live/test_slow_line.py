@@ -111,8 +111,12 @@ def cuts(bridge):
 
 @pytest.mark.parametrize(
     ("asked", "names"),
-    [("abort", ("alone",)), ("abort", ("one", "other", "stopped")), ("emergency_stop", ("last",))],
-    ids=["abort", "abort of one of a link", "emergency stop"],
+    [
+        ("abort", ("alone",)),
+        ("abort", ("one", "other", "stopped")),
+        ("emergency_stop", ("first", "second", "last")),
+    ],
+    ids=["abort", "abort of one of a link", "emergency stop of a link"],
 )
 def test_a_stop_does_not_wait_for_the_map_that_a_robot_is_being_sent(bridge, connect, asked, names):
     cuts_before = cuts(bridge)

@@ -147,6 +147,7 @@ _LATER = or_(
 )
 _ANSWER = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
 _READ_ANSWERS = _ANSWER.where(sa.c.robot == bindparam("of"), _LATER).order_by(sa.c.urgent.desc(), sa.c.id)
+_ABORTS = select(sa.c.id).where(sa.c.robot == bindparam("of"), sa.c.op == Abort.__name__, _LATER)
 _READ_THESE = _ANSWER.add_columns(sa.c.robot).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 _OF_THESE = sa.c.robot.in_(bindparam("robots", expanding=True))
 _OF_ROBOTS = select(sa.c.id, sa.c.robot, sa.c.urgent).where(_OF_THESE)
@@ -215,6 +216,11 @@ def read_answers(
     """
     found = connection.execute(_READ_ANSWERS, {"of": robot, "after": after, "after_urgent": after_urgent})
     return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in found]
+
+
+def waiting_aborts(connection: Connection, robot: str, after: int, after_urgent: int) -> set[int]:
+    """Return the ids of the Aborts among the robot's answers, as :func:`read_answers` selects them."""
+    return set(connection.scalars(_ABORTS, {"of": robot, "after": after, "after_urgent": after_urgent}))
 
 
 Outbox = tuple[str, int, int]

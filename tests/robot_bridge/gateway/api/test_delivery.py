@@ -53,6 +53,13 @@ class Mailboxes:
         new = [one for one in self.rows if one.id > (after_urgent if one.urgent else after)]
         return sorted(new, key=lambda one: (not one.urgent, one.id))
 
+    async def waiting_aborts(self, robot, after, after_urgent):
+        if self.fails:
+            self.fails -= 1
+            raise self.fault
+        new = [one for one in self.rows if one.id > (after_urgent if one.urgent else after)]
+        return {one.id for one in new if one.op == "Abort"}
+
     async def mark_sending(self, robot, id):
         assert robot == "r1"
         self.noted.append(("handed over", id))
@@ -86,8 +93,13 @@ class Connection:
         self.frames = []
         self.is_shut = self.is_sending = False
         self.is_slow, self.began, self.may_end = False, asyncio.Event(), asyncio.Event()
+        self.unheard_cuts = 0
         self.overtaken: int | None = None
         """messages that had been sent when a stop asked for the rest of a large one to end."""
+
+    @property
+    def is_busy(self):
+        return self.is_sending
 
     def write_at_once(self, frame):
         if self.is_shut or self.is_sending:
@@ -106,7 +118,10 @@ class Connection:
         self.frames.append(json.loads(frame))
 
     async def cut_if_busy(self):
-        if self.is_slow:
+        if self.is_slow and self.unheard_cuts:
+            # Nothing was in pieces yet.
+            self.unheard_cuts -= 1
+        elif self.is_slow:
             self.is_slow = False
             self.may_end.set()
             self.overtaken = len(self.frames)
@@ -142,6 +157,10 @@ class SharedChannel(RobotChannel):
     def __init__(self, connection):
         super().__init__(connection)
         self.asked, self.turn = [], asyncio.Event()
+
+    @property
+    def is_busy(self):
+        return not self.turn.is_set()
 
     @contextlib.asynccontextmanager
     async def lane(self, *, urgent, large):
@@ -181,11 +200,11 @@ async def test_what_waits_goes_out_once_in_order_and_what_comes_later_after_it(l
 
 
 async def test_what_drives_is_noted_before_it_is_sent_and_all_else_afterwards(line):
-    await line.put(row(1), row(2, "SetPath", '{"points": [[1, 2], [3, 4]]}'), row(3, "Abort", None))
+    await line.put(row(1), row(2, "SetPath", '{"points": [[1, 2], [3, 4]]}'), row(3, "SetPosIni"))
     line.delivery.begin()
     await rest()
     assert line.boxes.noted == [("handed over", 1), ("handed over", 2), ("delivered", 3)]
-    assert line.connection.sent == [(1, "SetPosEnd"), (2, "SetPath"), (3, "Abort")]
+    assert line.connection.sent == [(1, "SetPosEnd"), (2, "SetPath"), (3, "SetPosIni")]
 
 
 async def test_what_is_urgent_waits_for_no_turn_and_what_a_stop_overtakes_in_its_turn_is_looked_at_again(
@@ -195,15 +214,15 @@ async def test_what_is_urgent_waits_for_no_turn_and_what_a_stop_overtakes_in_its
     monkeypatch.setattr(delivery, "LARGE", frame)
     channel = SharedChannel(line.connection)
     line.delivery = Delivery(line.fleet, channel, "r1")
-    await line.put(row(1), row(2, "SetPosEnd", '{"x": 1.0, "y": 22.0}'), row(3, "Abort", "{}", urgent=True))
+    await line.put(row(1, "Abort", "{}", urgent=True), row(2), row(3, "SetPosEnd", '{"x": 1.0, "y": 22.0}'))
     line.delivery.begin()
     await rest()
-    assert line.connection.sent == [(3, "Abort")] and channel.asked == [(True, False), (False, False)]
+    assert line.connection.sent == [(1, "Abort")] and channel.asked == [(True, False), (False, False)]
     line.delivery.stop_now("stop-1")
-    line.boxes.ended = {1}
+    line.boxes.ended = {2}
     channel.turn.set()
     await rest()
-    assert line.connection.sent == [(3, "Abort"), ("stop-1", "Abort"), (2, "SetPosEnd")]
+    assert line.connection.sent == [(1, "Abort"), ("stop-1", "Abort"), (3, "SetPosEnd")]
     assert channel.asked[2:] == [(False, True)]
 
 
@@ -236,15 +255,19 @@ async def test_a_message_that_cannot_be_read_is_left_out_and_in_the_log(line, ca
     assert record.getMessage().startswith("link websocket: message 1 for robot 'r1': SetPosEnd: ")
 
 
-async def test_an_abort_is_sent_before_maps_that_wait_and_behind_what_moves_the_robot(line):
-    maps = [row(1, "SetMap", "{}", b"a window"), row(2, "SetMap", "{}")]
-    await line.put(*maps, row(3, "Abort", "{}"), row(4), row(5, "Abort", "{}"))
+async def test_an_abort_is_sent_before_all_that_waits_and_what_it_revokes_is_not_sent(line):
+    waiting = row(1, "SetMap", "{}", b"a window"), row(2), row(3, "SetPosIni"), row(4, "Abort", "{}")
+    await line.put(*waiting, row(5, "SetPath", '{"points": [[1, 2], [3, 4]]}'))
     line.delivery.begin()
     await rest()
-    assert [id for id, _ in line.connection.sent] == [3, 1, 2, 4, 5]
-    await line.put(row(6))
-    assert [id for id, _ in line.connection.sent][-1] == 6
-    assert line.boxes.asked == [(0, 0), (4, 0)]
+    assert [id for id, _ in line.connection.sent] == [4, 1, 3, 5]
+    assert line.boxes.noted == [*(("delivered", id) for id in (4, 1, 3)), ("handed over", 5)]
+    # The Abort that is not acknowledged yet is not sent once more; the next one is.
+    await line.put(row(6, "Abort", "{}"), row(7))
+    assert [id for id, _ in line.connection.sent[4:]] == [6, 7]
+    line.boxes.rows.clear()
+    await line.put()
+    assert line.delivery._sent.aborts == set()
 
 
 async def test_a_map_that_an_abort_overtook_is_sent_when_the_database_is_back(line, monkeypatch):
@@ -267,10 +290,11 @@ def failing_once(work):
     return work_or_fail
 
 
-async def test_an_abort_waits_neither_until_a_map_is_made_nor_for_its_turn(line):
+@pytest.mark.parametrize("waiting", [row(1, "SetMap", "{}", b"a window"), row(1), row(1, "SetPosIni")])
+async def test_an_abort_waits_for_the_turn_of_no_message_of_its_robot(line, waiting):
     channel = SharedChannel(line.connection)
     line.delivery = Delivery(line.fleet, channel, "r1")
-    await line.put(row(1, "SetMap", "{}", b"a window"))
+    await line.put(waiting)
     line.delivery.begin()
     await rest()
     assert channel.asked == [(False, False)] and line.connection.sent == []
@@ -278,7 +302,11 @@ async def test_an_abort_waits_neither_until_a_map_is_made_nor_for_its_turn(line)
     assert line.connection.sent == [(2, "Abort")]
     channel.turn.set()
     await rest()
-    assert line.connection.sent == [(2, "Abort"), (1, "SetMap")]
+    # A target that the Abort revokes is not sent at all.
+    assert line.connection.sent[1:] == [(1, waiting.op)] * (waiting.op != "SetPosEnd")
+
+
+async def test_an_abort_does_not_wait_until_a_map_is_made(line):
     is_made = asyncio.Event()
 
     async def make(_robot):
@@ -286,19 +314,60 @@ async def test_an_abort_waits_neither_until_a_map_is_made_nor_for_its_turn(line)
         return b"the whole site"
 
     line.fleet.whole_or_around = make
-    await line.put(row(3, "SetMap", "{}"))
-    await line.put(row(4, "Abort", "{}"))
-    assert line.connection.sent[2:] == [(4, "Abort")]
+    await line.put(row(1, "SetMap", "{}"))
+    line.delivery.begin()
+    await rest()
+    await line.put(row(2, "Abort", "{}"))
+    assert line.connection.sent == [(2, "Abort")]
     is_made.set()
     await rest()
-    assert line.connection.sent[3:] == [(3, "SetMap")]
+    assert line.connection.sent[1:] == [(1, "SetMap")]
+
+
+async def test_an_abort_that_cannot_be_read_amid_a_map_is_read_again(line, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.01)
+    channel = SharedChannel(line.connection)
+    line.delivery = Delivery(line.fleet, channel, "r1")
+    await line.put(row(1, "SetMap", "{}", b"a window"))
+    line.delivery.begin()
+    await rest()
+    line.boxes.fails = 2
+    await line.put(row(2, "Abort", "{}"))
+    assert line.connection.sent == []
+    async with asyncio.timeout(BUSY * 5):
+        while line.connection.sent != [(2, "Abort")]:
+            await asyncio.sleep(0.001)
+
+
+@pytest.mark.parametrize("comes", ["before", "meanwhile", "never"])
+async def test_an_abort_does_not_wait_for_the_result_of_ready_behind_the_map_of_another_robot(line, comes):
+    line.connection.is_sending = line.connection.is_slow = True
+    abort = row(1, "Abort", "{}")
+    if comes == "before":
+        await line.put(abort)
+        line.boxes.signal.clear()
+
+    async def after_the_map(frame):
+        await line.connection.may_end.wait()
+        line.connection.frames.append(json.loads(frame))
+
+    line.connection.send = after_the_map
+    sending = asyncio.create_task(line.delivery.send_result('{"id": 7, "method": "the result"}'))
+    await rest()
+    if comes == "meanwhile":
+        assert line.connection.overtaken is None
+        await line.put(abort)
+    assert line.connection.overtaken == (None if comes == "never" else 0)
+    line.connection.may_end.set()
+    await sending
+    assert line.connection.sent == [(7, "the result")]
 
 
 async def test_an_abort_does_not_wait_for_the_end_of_a_map_that_is_being_sent(line, monkeypatch):
     monkeypatch.setattr(robot_session, "FRAME_PIECE", 40)
     monkeypatch.setattr(delivery, "LARGE", 60)
-    line.connection.is_slow = True
-    await line.put(row(1, "SetMap", "{}", bytes(100)), row(2, "SetMap", "{}", bytes(200)))
+    line.connection.is_slow, line.connection.unheard_cuts = True, 1
+    await line.put(row(1, "SetMap", "{}", bytes(100)), row(2, "SetPosIni"))
     line.delivery.begin()
     async with asyncio.timeout(BUSY * 5):
         await line.connection.began.wait()
@@ -308,10 +377,10 @@ async def test_an_abort_does_not_wait_for_the_end_of_a_map_that_is_being_sent(li
     del line.boxes.rows[2]
     await line.put(row(4, "Abort", "{}"))
     async with asyncio.timeout(BUSY * 5):
-        while (2, "SetMap") not in line.connection.sent:
+        while (2, "SetPosIni") not in line.connection.sent:
             await asyncio.sleep(0.001)
     assert line.connection.overtaken == 0
-    assert line.connection.sent == [(1, "SetMap"), (4, "Abort"), (2, "SetMap")]
+    assert line.connection.sent == [(1, "SetMap"), (4, "Abort"), (2, "SetPosIni")]
 
 
 async def test_the_bytes_of_a_map_go_out_as_text(line):
@@ -337,10 +406,10 @@ async def test_the_bytes_of_a_large_map_are_the_same_whatever_they_are_cut_into(
 
 
 async def test_an_urgent_message_is_sent_before_older_ones_and_what_is_left_is_read_on_for_each_kind(line):
-    await line.put(row(4), row(5, "Abort", '{"emergency": true}', urgent=True))
+    await line.put(row(4, "SetPosIni"), row(5, "Abort", '{"emergency": true}', urgent=True))
     line.delivery.begin()
     await rest()
-    assert line.connection.sent == [(5, "Abort"), (4, "SetPosEnd")]
+    assert line.connection.sent == [(5, "Abort"), (4, "SetPosIni")]
     await line.put(row(6))
     assert line.boxes.asked[-1] == (4, 5)
     assert line.connection.sent[2:] == [(6, "SetPosEnd")]

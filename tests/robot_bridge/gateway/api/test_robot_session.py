@@ -24,6 +24,7 @@ from robot_bridge.gateway.monitoring import Counters
 from robot_bridge.gateway.storage.repositories.robots import FencedError
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
+from tests.support.patience import BUSY
 
 POSITION = json.dumps(
     {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1.0, "y": 2.0, "theta": 0.0, "v": 0.0}}
@@ -42,6 +43,8 @@ class Connection:
         if not self.is_sending:
             self.sent.append(json.loads(frame))
         return not self.is_sending
+
+    is_busy = False
 
     async def cut_if_busy(self):
         self.sent.append("cut if busy")
@@ -187,7 +190,7 @@ async def test_a_robot_that_acknowledges_ever_more_waits_for_what_is_being_store
 
 
 async def test_a_robot_that_another_gateway_got_while_it_was_let_in_is_refused_and_says_ready_again(
-    own, connection
+    own, connection, monkeypatch
 ):
     """It would stay connected to a gateway that has it no more; as it was lost it was not in yet."""
     lost = [FencedError("robot r1: another gateway has got it meanwhile; say Ready again")]
@@ -216,6 +219,9 @@ async def test_a_robot_that_another_gateway_got_while_it_was_let_in_is_refused_a
     await own._receive(ready)
     assert "another gateway has got it" in connection.sent[-1]["error"]["message"]
     assert (own.session._admitted, list(own.session._sessions), begun) == (False, [], [])
+    # Behind the map of another robot the result waits, and an Abort must not.
+    monkeypatch.setattr(own.session._delivery, "send_result", connection.send)
+    monkeypatch.setattr(connection, "send", fail_later)
     await own._receive(ready)
     assert connection.sent[-1]["result"]["ok"]
     assert (own.session._admitted, list(own.session._sessions), begun) == (True, [own.session], [1])
@@ -259,17 +265,30 @@ async def test_what_goes_wrong_over_a_link_has_a_number_and_ends_no_connection(l
     assert NUMBER.match(connection.sent[0]["error"]["message"])[1] in NUMBER.findall(caplog.text)
 
 
-async def test_a_link_that_was_cut_for_a_stop_gets_large_messages_after_its_last_robot(link, monkeypatch):
+async def test_a_link_is_busy_while_a_message_has_the_turn_that_others_wait_for(link):
+    assert not link.is_busy
+    async with link.lane(urgent=False, large=False):
+        assert link.is_busy
+    link._connection.is_busy = True
+    assert link.is_busy
+
+
+@pytest.mark.parametrize(("after", "longest", "waited"), [(0.2, 60.0, 0.2), (60.0, 0.1, 0.0)])
+async def test_a_link_that_was_cut_for_a_stop_gets_large_messages_after_its_last_robot(
+    link, monkeypatch, after, longest, waited
+):
     """Each robot's Abort is sent when it has said Ready: behind a map it would cut the link again."""
-    monkeypatch.setattr(robot_websockets, "AFTER_CUT_S", 0.2)
+    monkeypatch.setattr(robot_websockets, "AFTER_CUT_S", after)
+    monkeypatch.setattr(robot_websockets, "LONGEST_DELAY_S", longest)
+    monkeypatch.setattr(robot_websockets, "LinkedRobotChannel", lambda *_: None)
     link.kind, link._gate.limits = "slow", SimpleNamespace(robots=10)
+    loop = asyncio.get_running_loop()
     link.delay_large()
     await asyncio.sleep(0.15)
-    robot_came = asyncio.get_running_loop().time()
-    monkeypatch.setattr(robot_websockets, "LinkedRobotChannel", lambda *_: None)
+    robot_came = loop.time()
     link._new_place("r1", admits=True)
-    async with link.lane(urgent=False, large=True):
-        assert asyncio.get_running_loop().time() - robot_came >= 0.2
+    async with asyncio.timeout(BUSY * 5), link.lane(urgent=False, large=True):
+        assert loop.time() - robot_came >= waited
 
 
 async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(link, connection):

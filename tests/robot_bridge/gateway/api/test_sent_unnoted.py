@@ -36,6 +36,8 @@ class Wire:
     def write_at_once(self, _frame):
         return False
 
+    is_busy = False
+
     async def cut_if_busy(self):
         """No message is long here."""
 
@@ -141,7 +143,7 @@ async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fa
 
 
 @pytest.mark.parametrize("error", [None, StoreError])
-async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before_it_is(
+async def test_an_abort_waits_neither_until_it_is_noted_nor_for_what_is_before_it(
     line, wire, lose, monkeypatch, error
 ):
     monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
@@ -153,8 +155,8 @@ async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before
     async with asyncio.timeout(60):
         while len(wire.sent) < 2:
             await asyncio.sleep(0.01)
-    assert [method for method, _ in wire.sent] == ["SetPosIni", "Abort"]
-    assert wire.sent[1][1][1] == "queued"
+    assert [method for method, _ in wire.sent] == ["Abort", "SetPosIni"]
+    assert wire.sent[0][1] == ["queued", "queued"]
 
 
 async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_from_being_sent(
