@@ -321,7 +321,7 @@ _ROUNDING_S = 0.002
 
 
 def until_tick(seconds: float) -> float:
-    """Return the time until the last tick that is at most ``seconds`` away.
+    """Return the time until the last tick that is at most ``seconds`` away, at least half of ``seconds``.
 
     Of a process with little to do most of the processor time goes into waking up: what is done at intervals
     is done together. Work that takes long rests for half its interval all the same. Less than a tick is
@@ -331,7 +331,8 @@ def until_tick(seconds: float) -> float:
         return seconds
     now = time.monotonic() - _TICKS_SINCE
     tick = math.floor((now + seconds + _ROUNDING_S) / TICK_S) * TICK_S
-    return tick - now if tick - now >= seconds / 2 else tick - now + TICK_S
+    # An interval of less than two ticks may have none in its second half: half of it later there is one.
+    return min(max(tick - now, seconds / 2), seconds)
 
 
 # --- Garbage collection of reference cycles: rare, since all work waits meanwhile

@@ -140,19 +140,36 @@ def test_the_watchdog_is_fed_twice_as_often_as_it_asks(monkeypatch, limit, proce
     assert watchdog_interval() == interval
 
 
-@pytest.mark.parametrize("seconds", [0.5, 1.0, 2.0, 60.0])
-def test_what_is_done_at_intervals_is_done_at_common_moments_and_never_later(seconds, monkeypatch):
-    for now in (0.0, 0.01, 0.2489, 0.26, 7.4999):
-        monkeypatch.setattr(tasks.time, "monotonic", lambda now=now: tasks._TICKS_SINCE + now)
-        wait = tasks.until_tick(seconds)
-        assert (now + wait) / tasks.TICK_S == pytest.approx(round((now + wait) / tasks.TICK_S))
+@pytest.fixture
+def at(monkeypatch):
+    """Set the seconds since the first tick."""
+    return lambda now: monkeypatch.setattr(tasks.time, "monotonic", lambda: tasks._TICKS_SINCE + now)
+
+
+@pytest.mark.parametrize("seconds", [0.25, 0.3, 0.49, 0.5, 1.0, 2.0, 60.0])
+def test_what_is_done_at_intervals_is_never_done_later_and_rests_for_half_of_them(seconds, at):
+    for hundredths in range(50):
+        at(7 + hundredths / 100)
+        assert seconds / 2 <= tasks.until_tick(seconds) <= seconds
+        at(7.2499 + hundredths / 100)
+        assert seconds / 2 <= tasks.until_tick(seconds) <= seconds
+
+
+@pytest.mark.parametrize("seconds", [0.25, 0.3, 0.49, 0.5, 1.0, 2.0, 60.0])
+def test_what_is_done_at_intervals_is_done_at_common_moments_after_one_wait_or_two(seconds, at):
+    for now in (0.0, 0.01, 0.13, 0.2, 0.2489, 0.26, 7.4999):
+        waited = 0.0
         # What an event loop rounds off is not done twice.
-        assert seconds / 2 <= wait <= seconds + tasks._ROUNDING_S
+        for _ in range(1 if seconds >= 2 * tasks.TICK_S else 2):
+            at(now + waited)
+            waited += tasks.until_tick(seconds)
+        ticks = (now + waited) / tasks.TICK_S
+        assert ticks == pytest.approx(round(ticks), abs=2 * tasks._ROUNDING_S / tasks.TICK_S)
 
 
-def test_work_that_takes_long_rests_for_half_its_interval(monkeypatch):
-    monkeypatch.setattr(tasks.time, "monotonic", lambda: tasks._TICKS_SINCE + 0.24)
-    assert tasks.until_tick(0.25) == pytest.approx(0.26)
-    monkeypatch.setattr(tasks.time, "monotonic", lambda: tasks._TICKS_SINCE + 0.1)
+def test_work_that_takes_long_rests_for_half_its_interval(at):
+    at(0.24)
+    assert tasks.until_tick(0.25) == pytest.approx(0.125)
+    at(0.1)
     assert tasks.until_tick(0.25) == pytest.approx(0.15)
     assert tasks.until_tick(0.01) == 0.01
