@@ -34,6 +34,8 @@ SELDOM_S, QUIET_AFTER_S = 0.1, 5.0
 """The polling pause after so many seconds without rows: robots that report by SQL do so more often."""
 UNSEEN_S = 0.25
 """Longest delay of a write that did not change the log's time and size."""
+VISIBLE_AFTER_S = 5.0
+"""How long after a write to SQLite's log its commit may become visible: a slow disk syncs the log before."""
 FALLBACK_S = 1.0
 """How long a notified reader trusts the absence of notifications."""
 RETRY_AFTER_S = 1.0
@@ -123,24 +125,39 @@ class LogWakeup(PollingWakeup):
 
     A stat takes a twentieth of the time of a query. Two writes within one tick of the file system's clock may
     leave the same time and size: hence the limit. After a while without rows the system reports writes
-    (:class:`FileEvents`), where it can, and nothing is polled in between.
+    (:class:`FileEvents`), where it can, and nothing is polled while there are none.
+
+    A report is no commit: SQLite writes to the log, syncs it, and makes the commit visible in shared memory
+    afterwards, of which the system reports nothing. So after a report the log is polled, until there was none
+    for :data:`VISIBLE_AFTER_S`. Every commit writes to the log, also one whose rows were written before.
     """
 
     def __init__(self, log: Path) -> None:
         super().__init__()
         self._log = log
         self._events: FileEvents | None = None
-        self._returned_at = -math.inf
+        self._reported_at = -math.inf
+        """When the system last reported a write, or began to report them."""
         self._seen: tuple[int, int] | None = None
         """Time and size of the log before the reader last began to read the tables."""
 
     async def wait(self, *, found: bool) -> None:
         """Return when the log was written to; without a log after a pause."""
-        if not found and self._is_quiet and self._is_watched():
-            await self._wait_for_event()
+        if found or not self._is_quiet:
+            self._unwatch()
+        elif self._is_silent():
+            await self._wait_for_report()
             return
+        await self._poll(found=found)
+
+    async def close(self) -> None:
+        """Stop watching the log."""
         self._unwatch()
-        until = time.monotonic() + UNSEEN_S
+
+    async def _poll(self, *, found: bool) -> None:
+        # Looks at the tables follow a report at growing intervals: most disks sync within milliseconds.
+        now = time.monotonic()
+        until = now + min(UNSEEN_S, (now - self._reported_at) / 4)
         while True:
             await super().wait(found=found)
             state = self._state()
@@ -148,28 +165,30 @@ class LogWakeup(PollingWakeup):
                 break
         self._seen = state
 
-    async def close(self) -> None:
-        """Stop watching the log."""
-        self._unwatch()
-
-    async def _wait_for_event(self) -> None:
-        """Return after a write, :data:`SELDOM_S` after the last return at the earliest, or after a second."""
+    async def _wait_for_report(self) -> None:
+        """Return after a write, or after a second."""
         assert self._events is not None
-        if self._returned_at > -math.inf:
-            await asyncio.sleep(self._returned_at + SELDOM_S - time.monotonic())
-            await self._events.wait(until_tick(FALLBACK_S))
-        self._returned_at = time.monotonic()
+        if await self._events.wait(until_tick(FALLBACK_S)):
+            self._reported_at = time.monotonic()
+            self._pause = SHORTEST_S
 
-    def _is_watched(self) -> bool:
-        """Return whether events report writes to the log; it may be another file than before."""
+    def _is_silent(self) -> bool:
+        """Return whether writes are reported, and were not for so long that all commits are visible."""
+        # It may be another file than before.
         if self._events is None or not self._events.is_of(self._log):
             self._unwatch()
             self._events = FileEvents.of(self._log)
-        return self._events is not None
+            if self._events is None:
+                return False
+            # What was written before the watch may not be visible, either.
+            self._reported_at = time.monotonic()
+        elif self._events.read():
+            self._reported_at = time.monotonic()
+        return time.monotonic() - self._reported_at >= VISIBLE_AFTER_S
 
     def _unwatch(self) -> None:
         events, self._events = self._events, None
-        self._returned_at = -math.inf
+        self._reported_at = -math.inf
         if events is not None:
             events.close()
 
@@ -182,7 +201,7 @@ class LogWakeup(PollingWakeup):
 
 
 class FileEvents:
-    """Reports writes to one file by inotify, which only Linux has; a wait is for a write since the last."""
+    """Reports writes to one file, and its removal, by inotify, which only Linux has."""
 
     def __init__(self, descriptor: int, file: tuple[int, int]) -> None:
         self._descriptor = descriptor
@@ -201,7 +220,7 @@ class FileEvents:
         with contextlib.suppress(OSError):
             # Before the watch: of a file that takes its place meanwhile this is not the number.
             file = path.stat()
-            if libc.inotify_add_watch(descriptor, os.fsencode(path), _IN_MODIFY) >= 0:
+            if libc.inotify_add_watch(descriptor, os.fsencode(path), _REPORTED) >= 0:
                 return cls(descriptor, (file.st_dev, file.st_ino))
         os.close(descriptor)
         return None
@@ -214,8 +233,8 @@ class FileEvents:
             return False
         return self._file == (file.st_dev, file.st_ino)
 
-    async def wait(self, seconds: float) -> None:
-        """Return after a write, or after ``seconds``."""
+    async def wait(self, seconds: float) -> bool:
+        """Return true after a write since the last call, false after ``seconds`` without one."""
         loop = asyncio.get_running_loop()
         written = asyncio.Event()
         # Not watched between two waits: a file that is written to a thousand times a second is one event.
@@ -224,15 +243,22 @@ class FileEvents:
             await wait_at_most(written, seconds)
         finally:
             loop.remove_reader(self._descriptor)
+        return self.read()
+
+    def read(self) -> bool:
+        """Return at once whether there was a write since the last call."""
         with contextlib.suppress(BlockingIOError):
-            os.read(self._descriptor, 4096)
+            return bool(os.read(self._descriptor, 4096))
+        return False
 
     def close(self) -> None:
         """End the reports."""
         os.close(self._descriptor)
 
 
-_IN_MODIFY = 0x2
+_IN_MODIFY, _IN_ATTRIB, _IN_MOVE_SELF = 0x2, 0x4, 0x800
+_REPORTED = _IN_MODIFY | _IN_ATTRIB | _IN_MOVE_SELF
+"""A file that is open somewhere and is removed has one link less: that is an attribute."""
 
 
 class NotifiedWakeup:
