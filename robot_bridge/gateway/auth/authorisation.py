@@ -251,30 +251,47 @@ class AuthGate:
     async def watch(self) -> None:
         """Apply changed accounts, and end connections no longer permitted, until cancelled.
 
-        :raises StoreError: when they cannot be read; the last ones stay in force.
+        :raises StoreError: as :meth:`refresh`.
         """
         while True:
             await asyncio.sleep(until_tick(LOOK_INTERVAL))
-            try:
-                await self.refresh()
-            except StoreError as error:
-                raise StoreError(f"{error}; accounts stay as they were last read") from error
+            await self.refresh()
 
     async def refresh(self) -> None:
-        """Apply changed accounts, and end connections no longer permitted; raises StoreError."""
+        """Apply changed accounts, and end connections no longer permitted.
+
+        :raises StoreError: when the accounts cannot be read, the last ones stay in force; when ended sessions
+            alone cannot be read, the accounts were applied.
+        """
         desks = self._guests.sessions
-        ended = await self.accounts.refresh_with(audit.ended_sessions, list(desks))
-        without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
-        for connection, identity in self._guests:
-            fault = without_token[identity.kind] if identity.token is None else self._fault(identity)
-            if fault is not None:
-                self._guests.end(connection, REVOKED, fault)
+        try:
+            ended = await self.accounts.refresh_with(audit.ended_sessions, list(desks))
+        except StoreError as error:
+            await self._apply_accounts_alone()
+            raise StoreError(f"{error}; sessions that were ended elsewhere go on until then") from error
+        self._end_unpermitted()
         # A gateway that starts cannot distinguish the sessions of its own earlier run.
         left = [session for session, reason in ended.items() if reason == audit.GATEWAY_ENDED]
         if left:
             await self._database.run(audit.reopen_sessions, left)
         for session in ended.keys() - left:
             self._guests.end(desks[session], ENDED, ended[session])
+
+    async def _apply_accounts_alone(self) -> None:
+        """Apply changed accounts where ended sessions cannot be read: what is revoked must not go on."""
+        try:
+            await self.accounts.refresh()
+        except StoreError as error:
+            raise StoreError(f"{error}; accounts stay as they were last read") from error
+        self._end_unpermitted()
+
+    def _end_unpermitted(self) -> None:
+        """End the connections whose tokens are no longer valid."""
+        without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
+        for connection, identity in self._guests:
+            fault = without_token[identity.kind] if identity.token is None else self._fault(identity)
+            if fault is not None:
+                self._guests.end(connection, REVOKED, fault)
 
     async def close(self) -> None:
         """Write the waiting entries."""

@@ -192,6 +192,22 @@ def test_revoking_ends_open_connections_within_a_second(bridge, accounts, ada, r
     assert wait_for_patience(bridge, bob)[1].startswith("This token of Bob was revoked.")
 
 
+def test_a_revoked_token_ends_what_it_opened_where_ended_sessions_cannot_be_read(
+    bridge, accounts, close_code
+):
+    desk = bridge.desk(**accounts.operator("Guy", "viewer"))
+    told = "sessions that were ended elsewhere go on until then"
+    bridge.sql("alter table sessions rename to away")
+    try:
+        wait_until(lambda: told in bridge.output())
+        accounts.do("operators", "revoke", "Guy")
+        assert close_code(desk)[:2] == (4003, "this token of Guy was revoked")
+    finally:
+        bridge.sql("alter table away rename to sessions")
+    (said,) = [line for line in bridge.output().splitlines() if told in line]
+    assert "no such table: sessions" in said
+
+
 def test_a_revoked_robot_is_cut_off_also_when_it_does_not_agree(bridge, accounts):
     headers = accounts.robot("r5")["additional_headers"]
     raw = plain_socket(bridge, "/robot", f"Authorization: {headers['Authorization']}")
