@@ -489,7 +489,8 @@ class CommandService(CommandReader):
         welcome: Sequence[Answer],
         note_run: Callable[[Connection], bool],
     ) -> None:
-        async with self._held.of([robot]):
+        # A robot on SQL reads what is written here: an Abort that follows later would come too late.
+        async with self._held_behind_aborts([robot]):
             restarted = active_command.restart_commands(
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )

@@ -89,6 +89,14 @@ async def test_what_waits_to_be_sent_is_ended_by_it_and_not_sent_behind_it(drivi
     assert (await driving.states())["next"] == "aborted"
 
 
+async def test_a_robot_that_restarts_is_not_sent_again_what_it_ends(driving, lose):
+    """A robot on SQL reads what is written for it at once, before the Abort is stored otherwise."""
+    await abort_in_vain(driving, lose)
+    await driving.ready(magic=2, link="sql")
+    assert driving.waiting("r1") == ["OpAck", "SetMap", "Abort"]
+    assert (await driving.states())["far-r1"] == "aborted"
+
+
 async def test_asked_for_again_it_is_one(driving, lose):
     await abort_in_vain(driving, lose)
     report = await driving.fleet.orders.abort(AbortTask("command-abort", robot="r1"), "Ada")
