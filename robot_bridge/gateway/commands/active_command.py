@@ -541,8 +541,12 @@ class UnstoredAborts:
         return list(self._kept)
 
     def postpone(self, robot: str) -> None:
-        """Move a robot to the end: others must not wait while its Aborts cannot be stored."""
-        self._kept[robot] = self._kept.pop(robot)
+        """Move a robot to the end: others must not wait while its Aborts cannot be stored.
+
+        Another gateway may have stored them by then, or have the robot.
+        """
+        if (mine := self._kept.pop(robot, None)) is not None:
+            self._kept[robot] = mine
 
     def drop(self, robot: str) -> None:
         """Leave the Aborts of a robot to the gateway that has it; noted by the next :meth:`write_notes`."""

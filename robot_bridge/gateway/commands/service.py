@@ -284,18 +284,29 @@ class CommandService(CommandReader):
     async def save_progress(self) -> None:
         """Store kept Aborts, note those that are left, store progress along paths and late acknowledgements.
 
-        A robot that another gateway has by now does not prevent storing those of others. Raises StoreError.
+        A robot that another gateway has by now does not prevent storing those of others, nor does one whose
+        Abort cannot be stored: it is the last one the next time. Raises StoreError once the rest is stored.
         """
         self._unstored.write_notes()
         await self.resolve_uncertain_commit()
+        failure = None
         for robot in self._unstored.robots():
             try:
                 await to_its_end(self._issue_unstored(robot))
             except FencedError:
                 continue
-            except StoreError:
+            except StoreError as error:
                 self._unstored.postpone(robot)
-                raise
+                failure = error
+                break
+        await self._save_late()
+        driven = self._open.progress(DRIVEN_STEP)
+        if driven:
+            await self._save_driven(driven)
+        if failure is not None:
+            raise failure
+
+    async def _save_late(self) -> None:
         for robot, sa_id in list(self._late):
             # One that is refused, or fails otherwise, is dropped: the others have their turn.
             what = f"a late acknowledgement of robot {robot!r}"
@@ -303,9 +314,6 @@ class CommandService(CommandReader):
             with log_and_continue(log, what, except_for=StoreError), refused:
                 await self.acknowledge(robot, OpAck(id=sa_id))
             self._late.discard((robot, sa_id))
-        driven = self._open.progress(DRIVEN_STEP)
-        if driven:
-            await self._save_driven(driven)
 
     async def _save_driven(self, driven: Mapping[str, float]) -> None:
         """Store metres driven by command, except for robots of another gateway."""

@@ -159,6 +159,18 @@ async def test_one_robot_whose_abort_is_not_taken_keeps_no_other_from_having_its
         assert driving.fleet._commands._unstored.robots()[0] == robot
 
 
+async def test_nor_does_it_keep_what_others_have_driven_from_being_stored(driving, lose):
+    await driving.send("path", "SetPath", "r2", points=[(20.0, 40.0), (60.0, 40.0)])
+    await driving.acknowledge_all("r2")
+    for x in (22.0, 24.0):
+        await driving.at(x, 40.0, v=1.0, robot="r2")
+    await abort_in_vain(driving, lose)
+    lose(driving, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await driving.fleet.save()
+    assert driving.sql("select driven from commands where id = 'command-path'") == [(4.0,)]
+
+
 async def test_one_that_is_refused_as_data_is_not_kept(driving, lose):
     told = await abort_in_vain(driving, lose, DataRefusedError)
     assert told.endswith("it was sent to no robot")

@@ -54,6 +54,13 @@ def test_a_robot_whose_abort_cannot_be_stored_comes_last(kept):
     assert kept.robots() == ["r2", "r3", "r1"]
 
 
+def test_one_that_another_gateway_stores_meanwhile_is_not_put_last(kept):
+    kept.keep([abort("abort-0001"), abort("abort-0002", "r2")])
+    kept.discard_settled({"abort-0001"})
+    kept.postpone("r1")
+    assert kept.robots() == ["r2"]
+
+
 def test_a_newer_one_takes_the_place_of_the_one_before_and_none_of_one_for_a_command(kept):
     one, newer, single = abort("abort-0001"), abort("abort-0002"), abort("abort-0003", aborts="target-01")
     kept.keep([one, single, newer])
