@@ -26,7 +26,7 @@ from ...core.clock import Clock, steady_time
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.robots import Answer, OpAck, SendPos, SetPath
+from ...core.messages.robots import Answer, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
@@ -49,8 +49,14 @@ NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
 """Stands for a pose that was not stored: far from any real one."""
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
 SENT_ON_S = 60.0
-"""seconds after an Abort that another gateway could not store from which a newer command makes it void:
+"""seconds after an Abort that another gateway could not store from which a newer motion makes it void:
 clocks of gateways differ."""
+YOUNG_S = 600.0
+"""seconds for which that holds. An older Abort would stop a robot for no visible reason: see LATER_S."""
+LATER_S = 2.0
+"""the same for an older Abort: twice the difference of clocks above which it is logged."""
+MOTIONS = (SetPosEnd.__name__, SetPath.__name__)
+"""Commands that send a robot on."""
 MOST_LATE = 1000
 """most acknowledgements of ended commands that wait for the database."""
 
@@ -374,10 +380,11 @@ class CommandService(CommandReader):
             self._unstored.discard(order)
 
     async def _check_not_sent_on(self, kept: active_command.KeptAbort) -> None:
-        """Raise RefusedError where the robot got a command long after an Abort that was left; StoreError."""
-        order = kept.order
-        for newest in await self._database.run(commands.newest, order.robot, 1):
-            if newest.command != order.command and newest.steps[0].at > kept.at + SENT_ON_S:
+        """Raise RefusedError where the robot was sent on after an Abort that was left; StoreError."""
+        order, age = kept.order, self._clock.time() - kept.at
+        after = kept.at + (SENT_ON_S if age < YOUNG_S else LATER_S)
+        for newest in await self._database.run(commands.newest, order.robot, 1, MOTIONS):
+            if newest.steps[0].at > after:
                 raise RefusedError(
                     f"it was not stored, and the robot has been sent on since ({newest.op} of "
                     f"{newest.operator}): look whether it does what it should, and abort it if not"

@@ -140,11 +140,15 @@ def find_messages(
     return found
 
 
-def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
-    """Return the newest commands first, of one robot or of all."""
+def newest(
+    connection: Connection, robot: str | None, limit: int, ops: Sequence[str] = ()
+) -> list[CommandReport]:
+    """Return the newest commands first, of one robot or of all, and of the kinds ``ops`` if given."""
     query = select(commands).order_by(commands.c.created_at.desc(), commands.c.sa_id.desc()).limit(limit)
     if robot is not None:
         query = query.where(commands.c.robot == robot)
+    if ops:
+        query = query.where(commands.c.op.in_(ops))
     return [command.report for command in _load(connection, query)]
 
 

@@ -15,7 +15,7 @@ from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands import requests
 from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort
 from robot_bridge.gateway.commands.persistence import insert_commands
-from robot_bridge.gateway.commands.service import SENT_ON_S
+from robot_bridge.gateway.commands.service import SENT_ON_S, YOUNG_S
 from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 
 LOST = pytest.mark.parametrize(
@@ -243,6 +243,27 @@ async def test_it_is_void_where_the_robot_was_sent_on_long_after_it(driving, cap
     await driving.fleet.save()
     assert driving.waiting("r1") == ([] if aside > 0 else ["Abort"])
     assert ("the robot has been sent on since (SetPosEnd of Ada): look whether" in caplog.text) is (aside > 0)
+
+
+async def test_one_of_long_ago_is_void_where_the_robot_was_sent_on_soon_after_it(driving, caplog):
+    """It would stop a robot for no visible reason; sent on before, as in an outage, the robot is to stand."""
+    driving.now += 30.0
+    await driving.send("next")
+    await driving.acknowledge_all()
+    driving.now += YOUNG_S
+    leave(driving, YOUNG_S + 30.0)
+    leave(driving, YOUNG_S + 30.0, "r2")
+    await driving.fleet.save()
+    assert (driving.waiting("r1"), driving.waiting("r2")) == ([], ["Abort"])
+    assert "Abort abort-of-r1 of robot 'r1': it was not stored, and the robot has been sent on" in caplog.text
+
+
+async def test_what_sends_no_robot_on_makes_it_void_neither(driving):
+    driving.now += 10 * SENT_ON_S
+    await driving.send("here", "SetPosIni", x=20.0, y=40.0, theta=0.0)
+    leave(driving, 9 * SENT_ON_S)
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["SetPosIni", "Abort"]
 
 
 async def test_it_is_not_void_however_long_nobody_could_send_the_robot_anything(driving):
