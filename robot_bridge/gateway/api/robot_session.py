@@ -22,7 +22,7 @@ from ...protocol.codec import check_size, decode_position, decode_request, error
 from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS
 from ..auth.client_connection import ClientConnection
-from ..fleet.registration import ConnectionClaims
+from ..fleet.link_supervision import ConnectionClaims
 from ..fleet.robot_outboxes import RequestOutcome
 from ..fleet.service import Fleet
 from ..monitoring import BackgroundTasks

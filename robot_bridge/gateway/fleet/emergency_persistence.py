@@ -254,13 +254,14 @@ class AbortJournal(JournalFile):
         """Write ``kept``, and no others; see :meth:`write_entries`."""
         return self.write_entries(map(self._plain, kept))
 
-    def read(self) -> list[KeptAbort]:
+    def read(self, now: float | None = None) -> list[KeptAbort]:
         """Return the Aborts that an earlier gateway left on this database, less than a day ago.
 
-        What cannot be understood is logged, and kept beside for whoever looks into it. The file is written
-        without what is dropped.
+        ``now`` is by the clock of the times in the file (s), else the computer's. None of the Aborts is from
+        later: a clock was set back. What cannot be understood is logged, and kept beside for whoever looks
+        into it. The file is written without what is dropped.
         """
-        noted, fault = self.read_entries(self._understood)
+        noted, fault = self.read_entries(partial(self._understood, time.time() if now is None else now))
         if fault is not None:
             unread = self._file.with_name(f"{self._file.name}.unread")
             with contextlib.suppress(OSError):
@@ -294,7 +295,7 @@ class AbortJournal(JournalFile):
             "database": self._database,
         }
 
-    def _understood(self, noted: Entry) -> KeptAbort | None:
+    def _understood(self, now: float, noted: Entry) -> KeptAbort | None:
         """Return the noted Abort; None for one of another database, or too old; raises MessageError."""
         command, robot = noted.id("command"), check_robot_name(noted.value("robot", str))
         at, expires_in = noted.value("at", float), noted.optional("expires_in", float)
@@ -311,11 +312,11 @@ class AbortJournal(JournalFile):
             aborts=aborts,
         )
         is_elsewhere = noted.optional("database", str) != self._database
-        if is_elsewhere or time.time() - at > NOTE_VALID_S:
+        if is_elsewhere or now - at > NOTE_VALID_S:
             which = "of another database" if is_elsewhere else "too old"
             log.warning("%s: Abort %s of robot %r is dropped: it is %s", self._file, command, robot, which)
             return None
-        return KeptAbort(order, at, is_left=True)
+        return KeptAbort(order, min(at, now), is_left=True)
 
 
 # --- Storing an emergency stop and the Aborts of its robots, despite faults of single robots or tables ---

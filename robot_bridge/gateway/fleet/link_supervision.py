@@ -1,4 +1,4 @@
-"""Supervision of links and their processes, and of robots' accounts that block the database."""
+"""Supervision of links, their processes, connections by name, and accounts that block the database."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ...core.messages.base import to_json
 from ...core.messages.links import LinkReport, Links, LinkStatus, Playback, PlaybackReport, SetPlayback
 from ...core.sites.settings_tables import LinkOptions
 from ..model.events import Listeners, handles
-from ..model.robots import Robots
+from ..model.robots import Robot, Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions
 
@@ -174,6 +174,56 @@ class LinkWatch:
 def _reaches(known: _Known, now: float) -> bool:
     """Return whether a link reaches its robots although some of them have a fault."""
     return now - known.seen_at <= GRACE and known.status is not None and bool(known.status.reached)
+
+
+# --- Claims to names: a second robot that says Ready under the same account is detected and refused
+
+
+class ConnectionClaim(Protocol):
+    """A connection of a robot."""
+
+    async def answers(self) -> bool:
+        """Return whether the robot at its other end responds; takes a second at most."""
+
+
+class ConnectionClaims:
+    """The connections of robots, by name. Robots on SQL have none."""
+
+    def __init__(self) -> None:
+        self._holds: dict[str, ConnectionClaim] = {}
+
+    def claim(self, robot: str, hold: ConnectionClaim) -> None:
+        """Record that ``robot`` is at the other end of ``hold``, and of no other."""
+        self._holds[robot] = hold
+
+    def free(self, robot: str, hold: ConnectionClaim) -> None:
+        """Record that ``robot`` is no longer at the other end of ``hold``."""
+        if self._holds.get(robot) is hold:
+            del self._holds[robot]
+
+    async def answers(self, robot: str) -> bool:
+        """Return whether the robot has a connection and responds."""
+        hold = self._holds.get(robot)
+        return hold is not None and await hold.answers()
+
+
+async def claim_refusal(
+    robot: Robot, magic: int, silent: float, stale_after: float, holds: ConnectionClaims
+) -> str | None:
+    """Return why a Ready with ``magic`` is refused: it comes from another robot than the one of this name.
+
+    ``silent`` is the seconds since the last message of that one. A restarted robot is admitted: its old
+    connection is closed or does not answer; on SQL it said Stopped, or is silent for ``stale_after`` seconds.
+    """
+    if robot.magic == magic or silent >= stale_after:
+        return None
+    there = not robot.ended_in_order if robot.link == "sql" else await holds.answers(robot.name)
+    if not there:
+        return None
+    return (
+        f"another robot runs as {robot.name!r} (magic {robot.magic}, heard {silent:.1f} s ago); give each "
+        "robot an account of its own, or end the other one"
+    )
 
 
 # --- Links that a site names: each is started as a process of its own, and restarted when it ends ---

@@ -1,4 +1,4 @@
-"""Registration of robots that say Ready, their takeover with Aborts left for them, names, decommissioning."""
+"""Registration of robots that say Ready, their takeover with Aborts left for them, and decommissioning."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import logging
 from collections.abc import Collection, Iterable, Sequence
 from concurrent.futures import Future
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from sqlalchemy import Connection
 
@@ -40,6 +40,7 @@ from ..traffic.yielding import YieldManager
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_persistence import AbortJournal
 from .emergency_stop import EmergencyStops
+from .link_supervision import ConnectionClaims, claim_refusal
 from .robot_outboxes import MapSender, RequestOutcome, RobotOutboxes
 
 log = logging.getLogger(__name__)
@@ -243,7 +244,7 @@ class Takeover:
 class FleetAborts:
     """The Aborts that gateways of one fleet could not store, noted on this computer and at all of them.
 
-    ``journal`` is None for a gateway without a folder of its own.
+    ``journal``, with times of the database, is None for a gateway without a folder of its own.
     """
 
     def __init__(self, journal: AbortJournal | None, exchange: Exchange, membership: Membership) -> None:
@@ -264,14 +265,16 @@ class FleetAborts:
 
     def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool] | None:
         """Note what this gateway keeps, here and at the others; the result is whether it is on the disk."""
-        self._relay.note(map(self._noted, kept))
+        offset = self._membership.clock_offset
+        self._relay.note(_noted(one.order, one.at + offset) for one in kept)
         self._relay.settle(settled)
         return self._write_journal()
 
     def read(self) -> list[KeptAbort]:
         """Note what the file of an earlier gateway has, for whoever has the robots; return none."""
         if self._journal is not None:
-            self._relay.note(map(self._noted, self._journal.read()))
+            left = self._journal.read(self._membership.database_time())
+            self._relay.note(_noted(kept.order, kept.at) for kept in left)
         return []
 
     def left_for(self, robots: Iterable[str]) -> list[KeptAbort]:
@@ -309,74 +312,28 @@ class FleetAborts:
     def _write_journal(self) -> Future[bool] | None:
         if self._journal is None:
             return None
-        return self._journal.write([self._left(abort) for abort in self._relay.noted])
-
-    def _noted(self, kept: KeptAbort) -> NotedAbort:
-        order, at = kept.order, kept.at + self._membership.clock_offset
-        by, more = order.operator, (order.aborts, order.expires_in, order.is_emergency)
-        return NotedAbort(order.command, order.robot, by, at, order.reason, *more)
+        return self._journal.write([_kept(abort, abort.at) for abort in self._relay.noted])
 
     def _left(self, noted: NotedAbort) -> KeptAbort:
-        order = CommandOrder(
-            noted.command,
-            noted.robot,
-            Abort(emergency=noted.emergency),
-            noted.by,
-            noted.reason,
-            expires_in=noted.expires_in,
-            aborts=noted.aborts,
-        )
-        return KeptAbort(order, noted.at - self._membership.clock_offset, is_left=True)
+        return _kept(noted, noted.at - self._membership.clock_offset)
 
 
-# --- Claims to names: a second robot that says Ready under the same account is detected and refused
+def _noted(order: CommandOrder, at: float) -> NotedAbort:
+    more = order.aborts, order.expires_in, order.is_emergency
+    return NotedAbort(order.command, order.robot, order.operator, at, order.reason, *more)
 
 
-class ConnectionClaim(Protocol):
-    """A connection of a robot."""
-
-    async def answers(self) -> bool:
-        """Return whether the robot at its other end responds; takes a second at most."""
-
-
-class ConnectionClaims:
-    """The connections of robots, by name. Robots on SQL have none."""
-
-    def __init__(self) -> None:
-        self._holds: dict[str, ConnectionClaim] = {}
-
-    def claim(self, robot: str, hold: ConnectionClaim) -> None:
-        """Record that ``robot`` is at the other end of ``hold``, and of no other."""
-        self._holds[robot] = hold
-
-    def free(self, robot: str, hold: ConnectionClaim) -> None:
-        """Record that ``robot`` is no longer at the other end of ``hold``."""
-        if self._holds.get(robot) is hold:
-            del self._holds[robot]
-
-    async def answers(self, robot: str) -> bool:
-        """Return whether the robot has a connection and responds."""
-        hold = self._holds.get(robot)
-        return hold is not None and await hold.answers()
-
-
-async def claim_refusal(
-    robot: Robot, magic: int, silent: float, stale_after: float, holds: ConnectionClaims
-) -> str | None:
-    """Return why a Ready with ``magic`` is refused: it comes from another robot than the one of this name.
-
-    ``silent`` is the seconds since the last message of that one. A restarted robot is admitted: its old
-    connection is closed or does not answer; on SQL it said Stopped, or is silent for ``stale_after`` seconds.
-    """
-    if robot.magic == magic or silent >= stale_after:
-        return None
-    there = not robot.ended_in_order if robot.link == "sql" else await holds.answers(robot.name)
-    if not there:
-        return None
-    return (
-        f"another robot runs as {robot.name!r} (magic {robot.magic}, heard {silent:.1f} s ago); give each "
-        "robot an account of its own, or end the other one"
+def _kept(noted: NotedAbort, at: float) -> KeptAbort:
+    order = CommandOrder(
+        noted.command,
+        noted.robot,
+        Abort(emergency=noted.emergency),
+        noted.by,
+        noted.reason,
+        expires_in=noted.expires_in,
+        aborts=noted.aborts,
     )
+    return KeptAbort(order, at, is_left=True)
 
 
 # --- Registration of robots that say Ready: admitted with map and messages, or refused as a second one

@@ -17,7 +17,7 @@ from robot_bridge.gateway.api import robot_websockets
 from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
-from robot_bridge.gateway.fleet.registration import ConnectionClaims
+from robot_bridge.gateway.fleet.link_supervision import ConnectionClaims
 from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.monitoring import Counters

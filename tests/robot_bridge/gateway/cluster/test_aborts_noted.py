@@ -34,7 +34,7 @@ class Fleet:
     """The gateways of a fleet, by name, on one bus; ``now`` is the database's time."""
 
     def __init__(self, folder, names="abc"):
-        self.now, self.folder, self.cut = 1.8e9, folder, set()
+        self.now, self.folder, self.cut, self.journals = 1.8e9, folder, set(), []
         self.gateways = {name: Gateway(name, self) for name in names}
 
     def deliver(self, sender, subject, content):
@@ -54,7 +54,8 @@ class Gateway:
         member = SimpleNamespace(clock_offset=OFFSET, database_time=lambda: fleet.now)
         self.exchange = Exchange(name, KEY, [self])
         self.file = fleet.folder / f"{name}.aborts"
-        self.aborts = FleetAborts(AbortJournal(self.file, "db-1"), self.exchange, member)
+        fleet.journals.append(AbortJournal(self.file, "db-1"))
+        self.aborts = FleetAborts(fleet.journals[-1], self.exchange, member)
         self.kept = UnstoredAborts(self.aborts)
         self.aborts.serve(self)
 
@@ -89,7 +90,7 @@ class Gateway:
     def in_file(self):
         """Return what the file has for the next gateway of this name, once all is written."""
         self.aborts._write_journal().result()
-        return AbortJournal(self.file, "db-1").read()
+        return AbortJournal(self.file, "db-1").read(self._fleet.now)
 
     @property
     def ids(self):
@@ -104,7 +105,9 @@ class Gateway:
 def fleet(tmp_path, monkeypatch):
     fleet = Fleet(tmp_path)
     monkeypatch.setattr("time.time", lambda: fleet.now - OFFSET)
-    return fleet
+    yield fleet
+    for journal in fleet.journals:
+        journal._thread.shutdown()
 
 
 @pytest.fixture
@@ -117,8 +120,22 @@ def test_the_gateway_that_gets_the_robot_has_it_as_it_was_asked_for(fleet, abc):
     order = a.abort("r1", expires_in=60.0, aborts="target-01")
     assert b.ids == c.ids == []
     b.get("r1")
-    left = [KeptAbort(order, fleet.now - OFFSET, is_left=True)]
-    assert b.kept.of(["r1"]) == b.in_file() == left
+    assert b.kept.of(["r1"]) == [KeptAbort(order, fleet.now - OFFSET, is_left=True)]
+    assert b.in_file() == [KeptAbort(order, fleet.now, is_left=True)]
+
+
+def test_the_file_has_the_database_s_time_and_is_as_right_after_the_computer_s_clock_was_set(
+    fleet, abc, monkeypatch
+):
+    a, *_ = abc
+    a.abort("r1")
+    asked_at = fleet.now
+    a.in_file()
+    fleet.now += NOTE_VALID_S - 60.0
+    monkeypatch.setattr("time.time", lambda: fleet.now + 3600.0)
+    a = fleet.gateways["a"] = Gateway("a", fleet)
+    a.kept.restore({"r1"}.__contains__)
+    assert [abort.at for abort in a.aborts._relay.noted] == [asked_at]
 
 
 def test_a_gateway_that_has_the_robot_when_it_hears_of_it_has_it_at_once(abc):

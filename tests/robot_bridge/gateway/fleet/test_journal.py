@@ -312,6 +312,12 @@ def read_to_the_end(journal):
     return found
 
 
+async def test_an_abort_noted_before_the_clock_was_set_back_is_as_if_of_this_moment(aborts_file):
+    """Else what its robot was sent on with meanwhile would never be later than it."""
+    AbortJournal(aborts_file, "db-1").write(kept_since(1000.0)).result()
+    assert AbortJournal(aborts_file, "db-1").read(900.0) == left(kept_since(900.0))
+
+
 def test_what_is_dropped_is_in_the_file_no_more(aborts_file, caplog):
     young, old = kept_since(time.time(), ABORTS[:1]), kept_since(1.0, ABORTS[1:])
     AbortJournal(aborts_file, "db-1").write([*young, *old]).result()
@@ -365,7 +371,7 @@ GOOD = '{"command": "abort-0001", "robot": "r1", "by": "Ada", "at": 1e12, "datab
 def test_an_abort_that_cannot_be_understood_hides_no_other_and_is_in_the_log(aborts_file, caplog, bad):
     aborts_file.write_text(f"[{bad}, {GOOD}]", encoding="utf-8")
     order = CommandOrder("abort-0001", "r1", Abort(), "Ada")
-    assert AbortJournal(aborts_file, "db-1").read() == left([KeptAbort(order, 1e12)])
+    assert AbortJournal(aborts_file, "db-1").read(1e12) == left([KeptAbort(order, 1e12)])
     assert "could not be understood" in caplog.text
     assert "look whether robots stand that were sent an Abort" in caplog.text
 
