@@ -146,6 +146,12 @@ class CommandService(CommandReader):
         """Store the Aborts left for ``robots``, which this gateway has, before any other message."""
         self._unstored.keep_left_for(robots)
 
+    def end_left_for(self, robots: Iterable[str]) -> None:
+        """Have nobody store the Aborts left for ``robots``, which are gone, or were never sent anything."""
+        for robot in robots:
+            self._unstored.end(robot)
+        self._unstored.write_notes()
+
     def discard_aborts(self, ids: Container[str]) -> None:
         """Keep the Aborts with these ids no longer: another gateway has stored them, or found them void."""
         self._unstored.discard_settled(ids)

@@ -216,8 +216,11 @@ class Takeover:
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
         self._commands.keep_left_for([robot.name for robot in known])
         # One that is not stored yet is known to this gateway only by its Ready.
-        for name in set(some) - {robot.name for robot in known}:
+        new = set(some) - {robot.name for robot in known}
+        for name in new:
             self._robots.remove(name)
+        # An Abort of one that was removed must not meet whoever comes by its name.
+        self._commands.end_left_for(new - {command.report.robot for command in stored.commands})
         self._saving.begin([robot.name for robot in known])
         self._queues.adopt(stored.queues)
         self._emergency.take_over([robot.name for robot in known if robot.abilities != ""], stored.stop)

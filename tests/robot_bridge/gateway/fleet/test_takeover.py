@@ -10,7 +10,7 @@ import pytest
 from robot_bridge.core.errors import StoreError
 from robot_bridge.gateway.cluster import ownership as owning
 from robot_bridge.gateway.cluster.ownership import OwnerChanges
-from robot_bridge.gateway.fleet.registration import Takeover
+from robot_bridge.gateway.fleet.registration import StoredState, Takeover
 from robot_bridge.gateway.model.events import EventBus, RobotLeft
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.repositories.gateways import Claimed, Member, Owner, OwnersRead
@@ -99,6 +99,22 @@ async def test_who_does_not_wait_any_more_keeps_nobody_else_out(takeover, owners
     await asyncio.sleep(0)
     gone.cancel()
     assert await others == dict.fromkeys(ROBOTS)
+
+
+async def test_an_abort_left_for_a_robot_that_was_removed_ends_when_another_comes_by_its_name():
+    """One with open commands is there, and stored in a moment."""
+    ended, known = [], Robots()
+    known.ready("new", 1, "websocket", 0.0)
+    stored = StoredState([], [SimpleNamespace(report=SimpleNamespace(robot="sent on"))], [], None)
+
+    async def run(_work, _names):
+        return stored
+
+    names = "drop", "adopt", "keep_left_for", "begin", "take_over"
+    ignored = SimpleNamespace(**dict.fromkeys(names, lambda *_of: None), end_left_for=ended.extend)
+    rest = ignored, ignored, ignored, ignored, SimpleNamespace(run=run), None
+    await Takeover(None, None, known, *rest, EventBus())._read(["new", "sent on"])
+    assert ended == ["new"] and "new" not in known
 
 
 async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership):
