@@ -92,6 +92,7 @@ TOO_OLD_S = 20.0
 STORED_WITHIN_S = 1.0
 """seconds after which an unanswered Abort goes over the bus as well."""
 LATER = "it is stored and sent as soon as the database takes it"
+STAYS = "it stays noted, and is stored and sent by whichever gateway has the robot or gets it"
 MOST_AT_ONCE = 200
 FORGET_S = 3600.0
 
@@ -108,6 +109,14 @@ _PLAIN: dict[str, type[Exception]] = {
     cls.__name__: cls
     for cls in (MessageError, ForbiddenError, BusyError, DataRefusedError, StoreError, RefusedError)
 }
+
+
+class UnansweredError(RefusedError):
+    """No gateway has answered; ``silent`` says which, without what became of the request."""
+
+    def __init__(self, silent: str, became: str) -> None:
+        super().__init__(f"{silent}; {became}")
+        self.silent = silent
 
 
 class AbortNoter(Protocol):
@@ -230,8 +239,6 @@ class RequestRelay:
         """Return the results of requests about robots of other gateways; raises as their handlers do."""
         # An Abort makes a robot stand for a pause, too; but a pause that waited too long is refused.
         stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
-        # What the last pause has left would end the task that this one keeps.
-        self._noter.withdraw([id for robot, _ in stops if (id := self._paused.pop(robot, None))])
         relaying = asyncio.ensure_future(self._ask(requests, operator))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
         sent: list[str] = []
@@ -240,23 +247,40 @@ class RequestRelay:
             sent = [robot for robot, request in stops if self._send_abort(robot, request)]
         try:
             answers = await relaying
-        except StoreError as error:
+        except (StoreError, UnansweredError) as error:
             if not stops:
                 raise
-            to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
-            # A pause that fails has become an Abort.
-            paused = [self._noted(robot, r, operator) for robot, r in stops if isinstance(r, PauseRobot)]
-            self._noter.note(paused)
-            self._paused.update((abort.robot, abort.command) for abort in paused)
-            what = "The pause is not stored; an Abort" if paused else "The Abort is not stored; it"
-            raise StoreError(f"{error}. {what} was {to}; {LATER}: look whether they stand") from error
+            raise self._noted_failure(error, stops, sent, operator) from error
         try:
-            return [_result_in(answer) for answer in answers]
+            results = [_result_in(answer) for answer in answers]
         except (RefusedError, MessageError) as refusal:
             if not sent:
                 raise
             refused = MessageError if isinstance(refusal, MessageError) else RefusedError
             raise refused(with_abort_sent(refusal, sent)) from refusal
+        # The robots stand: what the last pause has left would end what they do next.
+        self._noter.withdraw([id for robot, _ in stops if (id := self._paused.pop(robot, None))])
+        return results
+
+    def _noted_failure(
+        self,
+        error: StoreError | UnansweredError,
+        stops: Sequence[tuple[str, DeskRequest[Any]]],
+        sent: Sequence[str],
+        operator: str,
+    ) -> StoreError | RefusedError:
+        """Return what says that Aborts are noted, and to whom they went. A pause that fails becomes one."""
+        paused = [self._noted(robot, r, operator) for robot, r in stops if isinstance(r, PauseRobot)]
+        self._noter.note(paused)
+        # Each takes the place of the one that the last pause has left.
+        self._noter.withdraw([id for abort in paused if (id := self._paused.pop(abort.robot, None))])
+        self._paused.update((abort.robot, abort.command) for abort in paused)
+        to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
+        what = "The pause is not stored; an Abort" if paused else "The Abort is not stored; it"
+        if isinstance(error, UnansweredError):
+            what = "The pause may not be stored; an Abort" if paused else "The Abort may not be stored; it"
+            return RefusedError(f"{error.silent}. {what} was {to}; {STAYS}: look whether they stand")
+        return StoreError(f"{error}. {what} was {to}; {LATER}: look whether they stand")
 
     def _noted(self, robot: str, request: DeskRequest[Any], operator: str) -> NotedAbort:
         reason: str | None = getattr(request, "reason", None)
@@ -288,7 +312,7 @@ class RequestRelay:
         return await self._collect(ids, [robot for robot, _ in requests])
 
     async def _collect(self, ids: list[int], robots: list[str]) -> list[str]:
-        """Return the answers in the order of ``ids``; raises RefusedError if one is missing."""
+        """Return the answers in the order of ``ids``; raises UnansweredError if one is missing."""
         event = asyncio.Event()
         self._answered.update(dict.fromkeys(ids, event))
         answers: dict[int, str] = {}
@@ -302,20 +326,21 @@ class RequestRelay:
                 if len(answers) == len(ids):
                     break
                 if pause <= 0:
-                    raise RefusedError(await self._unanswered(left, robots))
+                    raise await self._unanswered(left, robots)
                 await wait_at_most(event, pause)
         finally:
             for id in ids:
                 self._answered.pop(id, None)
         return [answers[id] for id in ids]
 
-    async def _unanswered(self, ids: list[int], robots: list[str]) -> str:
+    async def _unanswered(self, ids: list[int], robots: list[str]) -> UnansweredError:
         back = await self._database.run(gateways.withdraw_requests, ids)
         names = listed_names(
             sorted({f"{self._robots.gateway_of(robot) or 'none'} ({robot})" for robot in robots})
         )
         what = "was not done" if len(back) == len(ids) else "may have been done: look at the robot's commands"
-        return f"gateway {names} has not answered within {ANSWER_WITHIN_S:g} s; what was asked {what}"
+        silent = f"gateway {names} has not answered within {ANSWER_WITHIN_S:g} s"
+        return UnansweredError(silent, f"what was asked {what}")
 
     # --- what other gateways ask of robots of this one ---
 

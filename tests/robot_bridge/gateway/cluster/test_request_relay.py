@@ -74,16 +74,18 @@ class Notes:
 
 
 class Away:
-    """A database that is away for the next ``times``."""
+    """A database that is away for the next ``times``, and has the ``answer`` of another gateway then."""
 
     def __init__(self, times):
-        self.times = times
+        self.times, self.answer = times, '{"result": {}}'
 
     async def run(self, work, *_arguments):
         if self.times:
             self.times -= 1
             raise StoreError("away")
-        return [1] if work is gateways.add_requests else {1: '{"result": {}}'}
+        if work is gateways.collect_answers:
+            return {} if self.answer is None else {1: self.answer}
+        return [1]
 
 
 ABORTS = {
@@ -126,6 +128,43 @@ async def test_an_abort_of_a_robot_elsewhere_that_cannot_be_stored_is_noted_for_
     await relay.answer(request, "Ada")
     assert notes.noted == [noted]
     assert notes.withdrawn == ([noted.command] if asked == "pause" else [])
+
+
+async def test_what_a_pause_has_left_stays_noted_until_another_one_has_succeeded(known):
+    database = Away(1)
+    relay, request = relay_by(known, notes := Notes(), database), ABORTS["pause"]
+    with pytest.raises(StoreError):
+        await relay.answer(request, "Ada")
+    database.answer = '{"error": {"kind": "RefusedError", "text": "asked too long ago"}}'
+    with pytest.raises(RefusedError, match=r"^asked too long ago$"):
+        await relay.answer(request, "Ada")
+    assert (len(notes.noted), notes.withdrawn) == (1, [])
+    database.times = 1
+    with pytest.raises(StoreError):
+        await relay.answer(request, "Ada")
+    first, second = [one.command for one in notes.noted]
+    assert notes.withdrawn == [first]
+    database.answer = '{"result": {}}'
+    await relay.answer(request, "Ada")
+    assert notes.withdrawn == [first, second]
+
+
+@pytest.mark.parametrize("asked", sorted(ABORTS))
+async def test_an_abort_or_a_pause_that_nobody_answers_stays_noted_and_who_asked_hears_that(
+    known, monkeypatch, asked
+):
+    monkeypatch.setattr(request_relay, "ANSWER_WITHIN_S", 0.0)
+    database = Away(0)
+    database.answer = None
+    relay = relay_by(known, notes := Notes(), database)
+    with pytest.raises(RefusedError) as caught:
+        await relay.answer(ABORTS[asked], "Ada")
+    what = "pause may not be stored; an Abort" if asked == "pause" else "Abort may not be stored; it"
+    assert str(caught.value) == (
+        f"gateway a (r1) has not answered within 0 s. The {what} was sent to no robot; it stays noted, and "
+        "is stored and sent by whichever gateway has the robot or gets it: look whether they stand"
+    )
+    assert [(one.robot, one.by) for one in notes.noted] == [("r1", "Ada")] and notes.withdrawn == []
 
 
 class SlowOwner:
