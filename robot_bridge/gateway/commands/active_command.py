@@ -1,11 +1,12 @@
-"""Active commands: states of each, effects of acknowledgements, index by robot; Aborts not stored; no I/O."""
+"""Active commands: states of each, effects of acknowledgements; Aborts not stored; no I/O."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import logging
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, KeysView, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -372,77 +373,6 @@ def _to_be_sent_again(
     return dataclasses.replace(noted, written_at=now, handed=handed, out_of_sight=False)
 
 
-# --- Index of the open commands by id, robot and message; no I/O ---
-
-
-class ActiveCommands:
-    """Index of the open commands, to find those that a pose or an OpAck concerns without a search.
-
-    ``queued`` are those with a message waiting in SA, by the id of the message.
-    """
-
-    def __init__(self) -> None:
-        self.queued: dict[int, ActiveCommand] = {}
-        self._by_id: dict[str, ActiveCommand] = {}
-        self._by_robot: dict[str, dict[str, ActiveCommand]] = {}
-        self._stored_driven: dict[str, float] = {}
-
-    def __iter__(self) -> Iterator[ActiveCommand]:
-        return iter(list(self._by_id.values()))
-
-    def get(self, command: str) -> ActiveCommand | None:
-        """Return a command by its id."""
-        return self._by_id.get(command)
-
-    @property
-    def robots(self) -> KeysView[str]:
-        """The robots that have open commands."""
-        return self._by_robot.keys()
-
-    def of(self, robot: str) -> list[ActiveCommand]:
-        """Return the commands of a robot, the oldest first."""
-        mine = self._by_robot.get(robot)
-        return list(mine.values()) if mine else []
-
-    def add(self, command: ActiveCommand) -> None:
-        """Add a command, or replace its former state."""
-        report = command.report
-        former = self._by_id.get(report.command)
-        if former is not None:
-            self.queued.pop(former.sa_id, None)
-        self._by_id[report.command] = command
-        self._by_robot.setdefault(report.robot, {})[report.command] = command
-        if report.state is CommandState.QUEUED:
-            self.queued[command.sa_id] = command
-        if command.driven is None:
-            self._stored_driven.pop(report.command, None)
-        else:
-            self._stored_driven[report.command] = command.driven
-
-    def remove(self, command: str) -> None:
-        """Forget a command that has ended."""
-        former = self._by_id.pop(command, None)
-        self._stored_driven.pop(command, None)
-        if former is not None:
-            self.queued.pop(former.sa_id, None)
-            mine = self._by_robot[former.report.robot]
-            del mine[command]
-            if not mine:
-                del self._by_robot[former.report.robot]
-
-    def progress(self, least: float) -> dict[str, float]:
-        """Return the metres driven of paths, where they have grown by ``least`` since they were stored."""
-        return {
-            id: driven
-            for id, stored in self._stored_driven.items()
-            if (driven := self._by_id[id].driven) is not None and driven - stored >= least
-        }
-
-    def note_progress(self, driven: Mapping[str, float]) -> None:
-        """Record the metres driven as stored."""
-        self._stored_driven.update({id: metres for id, metres in driven.items() if id in self._stored_driven})
-
-
 # --- Aborts that could not be stored, kept until they are ---
 
 
@@ -483,6 +413,8 @@ class UnstoredAborts:
 
     def __init__(self, notes: AbortNotes | None = None) -> None:
         self._kept: dict[str, dict[str | None, KeptAbort]] = {}
+        self._aside: set[str] = set()
+        """ids of those that are noted, and not due."""
         self._notes = notes
         self._settled: list[str] = []
         self._is_noted = True
@@ -529,12 +461,23 @@ class UnstoredAborts:
         has_failed = writing is not None and writing.done() and not writing.result()
         if self._notes is not None and (has_failed or not self._is_noted):
             settled, self._settled = self._settled, []
-            self._writing = self._notes.write(self.of(self._kept), settled)
+            self._writing = self._notes.write(self._all(), settled)
         self._is_noted = True
 
     def of(self, robots: Iterable[str]) -> list[KeptAbort]:
-        """Return the Aborts of ``robots``."""
-        return [kept for robot in robots for kept in self._kept.get(robot, {}).values()]
+        """Return the Aborts of ``robots`` that are due."""
+        mine = [kept for robot in robots for kept in self._kept.get(robot, {}).values()]
+        return [kept for kept in mine if kept.order.command not in self._aside]
+
+    @contextlib.contextmanager
+    def aside(self, orders: Iterable[CommandOrder]) -> Iterator[None]:
+        """Keep Aborts noted, but not due, while something else is tried that replaces them."""
+        ids = {order.command for order in orders}
+        self._aside |= ids
+        try:
+            yield
+        finally:
+            self._aside -= ids
 
     def robots(self) -> list[str]:
         """Return the names of the robots with unstored Aborts."""
@@ -574,9 +517,12 @@ class UnstoredAborts:
 
     def discard_settled(self, ids: Container[str]) -> None:
         """Forget the Aborts with these ids: another gateway has stored them, or found them void."""
-        for kept in self.of(self.robots()):
+        for kept in self._all():
             if kept.order.command in ids:
                 self.discard(kept.order)
+
+    def _all(self) -> list[KeptAbort]:
+        return [kept for mine in self._kept.values() for kept in mine.values()]
 
     def _keep(self, kept: KeptAbort) -> None:
         order = kept.order

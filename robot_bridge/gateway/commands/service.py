@@ -36,8 +36,8 @@ from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from . import active_command, persistence
-from .active_command import ABORTED, GATEWAY, ActiveCommand, ActiveCommands, CommandOrder, Recall, given_up_by
-from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
+from .active_command import ABORTED, GATEWAY, ActiveCommand, CommandOrder, Recall, given_up_by
+from .validation import ActiveCommands, CommandReader, CommandRules, CommandValidator, WaitingRobots
 
 log = logging.getLogger(__name__)
 
@@ -135,6 +135,10 @@ class CommandService(CommandReader):
         """Keep Aborts no longer: they are stored, or refused."""
         for order in aborts:
             self._unstored.discard(order)
+
+    def aborts_aside(self, aborts: Iterable[CommandOrder]) -> contextlib.AbstractContextManager[None]:
+        """Store Aborts no sooner than what is tried meanwhile has failed; they stay noted."""
+        return self._unstored.aside(aborts)
 
     def keep_left(self, left: Iterable[active_command.KeptAbort]) -> None:
         """Store those Aborts that another gateway left of robots of this one, before any other message."""

@@ -1,11 +1,11 @@
-"""Validation of commands against rules, abilities and the robots' present commands."""
+"""Index of the open commands; validation of new ones against them, rules and abilities."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, KeysView, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from ...core.errors import RefusedError
@@ -17,8 +17,79 @@ from ..model.robots import Robots
 from ..site.places import ServedSite, keepout_refusals
 from ..storage.repositories.closures import HoldRow
 from . import active_command
-from .active_command import ActiveCommand, ActiveCommands, CommandOrder, create_command, recalled, superseded
+from .active_command import ActiveCommand, CommandOrder, create_command, recalled, superseded
 from .persistence import CommandInsert
+
+# --- Index of the open commands by id, robot and message; no I/O ---
+
+
+class ActiveCommands:
+    """Index of the open commands, to find those that a pose or an OpAck concerns without a search.
+
+    ``queued`` are those with a message waiting in SA, by the id of the message.
+    """
+
+    def __init__(self) -> None:
+        self.queued: dict[int, ActiveCommand] = {}
+        self._by_id: dict[str, ActiveCommand] = {}
+        self._by_robot: dict[str, dict[str, ActiveCommand]] = {}
+        self._stored_driven: dict[str, float] = {}
+
+    def __iter__(self) -> Iterator[ActiveCommand]:
+        return iter(list(self._by_id.values()))
+
+    def get(self, command: str) -> ActiveCommand | None:
+        """Return a command by its id."""
+        return self._by_id.get(command)
+
+    @property
+    def robots(self) -> KeysView[str]:
+        """The robots that have open commands."""
+        return self._by_robot.keys()
+
+    def of(self, robot: str) -> list[ActiveCommand]:
+        """Return the commands of a robot, the oldest first."""
+        mine = self._by_robot.get(robot)
+        return list(mine.values()) if mine else []
+
+    def add(self, command: ActiveCommand) -> None:
+        """Add a command, or replace its former state."""
+        report = command.report
+        former = self._by_id.get(report.command)
+        if former is not None:
+            self.queued.pop(former.sa_id, None)
+        self._by_id[report.command] = command
+        self._by_robot.setdefault(report.robot, {})[report.command] = command
+        if report.state is CommandState.QUEUED:
+            self.queued[command.sa_id] = command
+        if command.driven is None:
+            self._stored_driven.pop(report.command, None)
+        else:
+            self._stored_driven[report.command] = command.driven
+
+    def remove(self, command: str) -> None:
+        """Forget a command that has ended."""
+        former = self._by_id.pop(command, None)
+        self._stored_driven.pop(command, None)
+        if former is not None:
+            self.queued.pop(former.sa_id, None)
+            mine = self._by_robot[former.report.robot]
+            del mine[command]
+            if not mine:
+                del self._by_robot[former.report.robot]
+
+    def progress(self, least: float) -> dict[str, float]:
+        """Return the metres driven of paths, where they have grown by ``least`` since they were stored."""
+        return {
+            id: driven
+            for id, stored in self._stored_driven.items()
+            if (driven := self._by_id[id].driven) is not None and driven - stored >= least
+        }
+
+    def note_progress(self, driven: Mapping[str, float]) -> None:
+        """Record the metres driven as stored."""
+        self._stored_driven.update({id: metres for id, metres in driven.items() if id in self._stored_driven})
+
 
 # --- Queries of the open commands; nothing here changes any ---
 

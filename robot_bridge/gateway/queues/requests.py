@@ -10,7 +10,7 @@ from functools import partial
 
 from sqlalchemy import Connection
 
-from ...core.errors import RefusedError, StoreError
+from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.messages import queues as messages
 from ...core.messages.commands import AbortTask, CommandState
 from ...core.messages.records import (
@@ -67,16 +67,21 @@ class PauseService:
         self._robots.check_known(request.robot)
         # What is refused must not stop the robot while it waits for its turn.
         self._doing_and_kept(request.robot)
-        # What the last pause has left would end the task that this one keeps.
-        self._commands.release_aborts(self._left.pop(request.robot, ()))
-        pausing = start_task(self._pause_held(request, operator))
+        left = self._left.get(request.robot, [])
         # An Abort of whatever the robot does by then, which holds its queue too, also where it does nothing.
         abort = CommandOrder(str(uuid.uuid4()), request.robot, Abort(), operator, _because_paused(request))
-        try:
-            return await self._orders.send_if_unstored([abort], pausing, is_pause=True)
-        except StoreError:
-            self._left[request.robot] = [abort]
-            raise
+        # What the last pause has left would end the task that this one keeps, unless this one fails, too.
+        with self._commands.aborts_aside(left):
+            pausing = start_task(self._pause_held(request, operator))
+            try:
+                report = await self._orders.send_if_unstored([abort], pausing, is_pause=True)
+            except StoreError as error:
+                if not isinstance(error.__cause__, DataRefusedError):
+                    self._left[request.robot] = [abort]
+                raise
+            self._commands.release_aborts(left)
+        self._left.pop(request.robot, None)
+        return report
 
     async def _pause_held(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         async with self._registry.holding([request.robot]):

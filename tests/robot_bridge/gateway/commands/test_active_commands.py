@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from robot_bridge.gateway.commands.active_command import ActiveCommands
+from robot_bridge.gateway.commands.validation import ActiveCommands
 from tests.robot_bridge.gateway.commands.command_makers import ACKNOWLEDGED, DELIVERED, PATH, TARGET, command
 
 

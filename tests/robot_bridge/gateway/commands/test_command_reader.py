@@ -6,8 +6,7 @@ import pytest
 
 from robot_bridge.core.messages.commands import CommandState
 from robot_bridge.core.messages.robots import SetPosIni
-from robot_bridge.gateway.commands.active_command import ActiveCommands
-from robot_bridge.gateway.commands.validation import CommandReader
+from robot_bridge.gateway.commands.validation import ActiveCommands, CommandReader
 from tests.robot_bridge.gateway.commands.command_makers import (
     ABORT,
     ACKNOWLEDGED,

@@ -6,10 +6,11 @@ import asyncio
 import json
 import math
 import re
+from unittest.mock import AsyncMock
 
 import pytest
 
-from robot_bridge.core.errors import RefusedError, StoreError, UncertainError
+from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.queues import (
     GetQueue,
@@ -350,6 +351,47 @@ async def test_a_pause_that_is_lost_becomes_an_abort_that_holds_the_queue(line, 
     report = await line.report()
     assert (report.state.value, [one.task for one in report.tasks]) == ("paused", ["task-000a", "task-000b"])
     assert await line.sent() == [PLACES["a"], "Abort"]
+
+
+@pytest.mark.parametrize("refusal", [RefusedError, DataRefusedError])
+async def test_a_second_pause_that_is_refused_leaves_the_abort_of_the_first_one(
+    line, lose, monkeypatch, refusal
+):
+    await line.yard.send("x", x=60.0, y=40.0)
+    await line.yard.acknowledge_all()
+    lose(line.yard, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await pause(line)
+    with monkeypatch.context() as patch:
+        patch.setattr(line.yard.fleet.pauses, "_pause_held", AsyncMock(side_effect=refusal("no")))
+        with pytest.raises((RefusedError, StoreError), match="no"):
+            await pause(line)
+    await line.yard.fleet.save()
+    assert (await line.sent())[1:] == ["Abort"]
+
+
+async def test_what_the_first_one_has_left_is_not_stored_while_the_second_one_waits_for_its_turn(
+    line, lose, monkeypatch
+):
+    """It would end what the second one keeps."""
+    await line.yard.send("x", x=60.0, y=40.0)
+    await line.yard.acknowledge_all()
+    lose(line.yard, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await pause(line)
+    pauses = line.yard.fleet.pauses
+    pause_held = pauses._pause_held
+
+    async def after_a_save(*asked):
+        await line.yard.fleet.save()
+        assert "Abort" not in await line.sent()
+        return await pause_held(*asked)
+
+    monkeypatch.setattr(pauses, "_pause_held", after_a_save)
+    report = await pause(line)
+    await line.yard.fleet.save()
+    assert [one.x for one in report.tasks] == [60.0]
+    assert (await line.sent()).count("Abort") == 1
 
 
 async def test_a_pause_that_is_lost_of_a_robot_that_does_nothing_becomes_an_abort_too(line, lose):
