@@ -336,6 +336,10 @@ class AbortRelay:
         """The Aborts that are not stored, as far as is known."""
         return list(self._noted.values())
 
+    def knows(self, id: str) -> bool:
+        """Return whether an Abort is noted."""
+        return id in self._noted
+
     def left_for(self, robots: Iterable[str]) -> list[NotedAbort]:
         """Return the noted Aborts of ``robots``."""
         of = set(robots) if self._noted else set()
@@ -375,13 +379,14 @@ class AbortRelay:
 
     def send_changes(self) -> None:
         """Send what other gateways do not know yet, some of it at a time."""
-        unsent = [self._noted[id] for id in self._unsent]
+        unsent = (self._noted[id] for id in list(self._unsent))
         for some in itertools.islice(batches(unsent, LARGEST_NOTIFICATION, MOST_ABORTS), AT_ONCE):
             if not self._exchange.send(EVERYBODY, AbortsNoted(self._exchange.gateway, some)):
                 return
             for abort in some:
                 self._unsent.pop(abort.command, None)
-        for ids in itertools.islice(batches(self._unsaid, LARGEST_NOTIFICATION // 2, MOST_ABORTS), AT_ONCE):
+        unsaid = list(self._unsaid)
+        for ids in itertools.islice(batches(unsaid, LARGEST_NOTIFICATION // 2, MOST_ABORTS), AT_ONCE):
             settled = {id: self._settled[id] for id in ids}
             if not self._exchange.send(EVERYBODY, AbortsSettled(self._exchange.gateway, settled)):
                 return

@@ -6,7 +6,7 @@ import contextlib
 import dataclasses
 import logging
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -413,6 +413,8 @@ class UnstoredAborts:
 
     def __init__(self, notes: AbortNotes | None = None) -> None:
         self._kept: dict[str, dict[str | None, KeptAbort]] = {}
+        self._orders: dict[str, CommandOrder] = {}
+        """the orders of the kept ones, by id."""
         self._aside: set[str] = set()
         """ids of those that are noted, and not due."""
         self._notes = notes
@@ -493,14 +495,16 @@ class UnstoredAborts:
 
     def drop(self, robot: str) -> None:
         """Leave the Aborts of a robot to the gateway that has it; noted by the next :meth:`write_notes`."""
-        if self._kept.pop(robot, None):
+        for kept in self._kept.pop(robot, {}).values():
+            self._orders.pop(kept.order.command, None)
             self._is_noted = False
 
-    def end(self, robot: str) -> None:
-        """Forget the Aborts of a robot that is removed; noted by the next :meth:`write_notes`."""
-        self.keep_left_for([robot])
-        for kept in self._kept.pop(robot, {}).values():
-            self._settle(kept.order.command)
+    def end(self, robots: Collection[str]) -> None:
+        """Forget the Aborts of robots that are removed; noted by the next :meth:`write_notes`."""
+        self.keep_left_for(robots)
+        for robot in robots:
+            for kept in self._kept.pop(robot, {}).values():
+                self._settle(kept.order.command)
 
     def discard(self, order: CommandOrder) -> None:
         """Forget an Abort, unless a newer one is kept in its place; noted by the next :meth:`write_notes`.
@@ -515,11 +519,10 @@ class UnstoredAborts:
         if not mine:
             self._kept.pop(order.robot, None)
 
-    def discard_settled(self, ids: Container[str]) -> None:
+    def discard_settled(self, ids: Iterable[str]) -> None:
         """Forget the Aborts with these ids: another gateway has stored them, or found them void."""
-        for kept in self._all():
-            if kept.order.command in ids:
-                self.discard(kept.order)
+        for order in [order for id in ids if (order := self._orders.get(id)) is not None]:
+            self.discard(order)
 
     def _all(self) -> list[KeptAbort]:
         return [kept for mine in self._kept.values() for kept in mine.values()]
@@ -533,9 +536,11 @@ class UnstoredAborts:
         elif before is not None:
             self._settle(before.order.command)
         mine[order.aborts] = kept
+        self._orders[order.command] = order
         self._is_noted = False
 
     def _settle(self, id: str) -> None:
+        self._orders.pop(id, None)
         if self._notes is not None:
             self._settled.append(id)
         self._is_noted = False

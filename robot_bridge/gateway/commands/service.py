@@ -11,7 +11,6 @@ from collections.abc import (
     Awaitable,
     Callable,
     Collection,
-    Container,
     Coroutine,
     Iterable,
     Mapping,
@@ -152,11 +151,10 @@ class CommandService(CommandReader):
 
     def end_left_for(self, robots: Iterable[str]) -> None:
         """Have nobody store the Aborts left for ``robots``, which are gone, or were never sent anything."""
-        for robot in robots:
-            self._unstored.end(robot)
+        self._unstored.end(list(robots))
         self._unstored.write_notes()
 
-    def discard_aborts(self, ids: Container[str]) -> None:
+    def discard_aborts(self, ids: Iterable[str]) -> None:
         """Keep the Aborts with these ids no longer: another gateway has stored them, or found them void."""
         self._unstored.discard_settled(ids)
 
@@ -287,7 +285,7 @@ class CommandService(CommandReader):
 
     async def give_up(self, robot: str, reason: str) -> None:
         """End every command of a robot, which will not carry them out."""
-        self._unstored.end(robot)
+        self._unstored.end([robot])
         await to_its_end(self._give_up(robot, reason))
 
     async def resolve_uncertain_commit(self) -> None:

@@ -10,6 +10,7 @@ import json
 import logging
 import math
 import os
+import threading
 import time
 import uuid
 from collections.abc import Awaitable, Callable, Iterable, Sequence
@@ -120,6 +121,8 @@ class JournalFile:
         self._fault = ""
         # One thread: the last write wins.
         self._thread = ThreadPoolExecutor(1, self.what)
+        self._lock = threading.Lock()
+        self._due: Future[bool] | None = None
 
     def check(self) -> None:
         """Raise BridgeError when entries could not be written; reserve room for them."""
@@ -137,7 +140,25 @@ class JournalFile:
 
         A failed write is logged, and its result is false: it must not prevent a stop from being sent.
         """
-        return self._thread.submit(self._write, list(entries))
+        noted = list(entries)
+        return self._thread.submit(self._write, lambda: noted)
+
+    def write_present(self, entries: Callable[[], Iterable[object]]) -> Future[bool]:
+        """Write what ``entries`` returns when the thread calls it, once for all calls until then.
+
+        The future is as of :meth:`write_entries`.
+        """
+        # Held but for a moment: the thread may begin before what it writes is known to be due.
+        with self._lock:
+            if self._due is None:
+                self._due = self._thread.submit(self._write_present, entries)
+            return self._due
+
+    def _write_present(self, entries: Callable[[], Iterable[object]]) -> bool:
+        # What changes from here on is due again, whether it is among these or not.
+        with self._lock:
+            self._due = None
+        return self._write(entries)
 
     def read_entries(self, decode: Callable[[Entry], T]) -> tuple[list[T], str | None]:
         """Return the entries that an earlier gateway left, oldest first, and what is wrong with the file.
@@ -175,10 +196,12 @@ class JournalFile:
             noted = None
         return (noted, None) if isinstance(noted, list) else ([], NOT_UNDERSTOOD)
 
-    def _write(self, entries: list[object]) -> bool:
+    def _write(self, entries: Callable[[], Iterable[object]]) -> bool:
         try:
-            if entries:
-                self._write_text(json.dumps(entries).encode())
+            # One by one: other threads have their turns between those of a whole fleet.
+            noted = [json.dumps(one) for one in entries()]
+            if noted:
+                self._write_text(f"[{', '.join(noted)}]".encode())
             else:
                 self._file.unlink(missing_ok=True)
                 self._set_room_aside()
@@ -253,6 +276,10 @@ class AbortJournal(JournalFile):
     def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool]:
         """Write ``kept``, and no others; see :meth:`write_entries`."""
         return self.write_entries(map(self._plain, kept))
+
+    def write_newest(self, kept: Callable[[], Iterable[KeptAbort]]) -> Future[bool]:
+        """Write what ``kept`` returns, and no others, once for many calls; see :meth:`write_present`."""
+        return self.write_present(lambda: map(self._plain, kept()))
 
     def read(self, now: float | None = None) -> list[KeptAbort]:
         """Return the Aborts that an earlier gateway left on this database, less than a day ago.

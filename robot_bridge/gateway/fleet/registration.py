@@ -268,8 +268,8 @@ class FleetAborts:
 
     def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool] | None:
         """Note what this gateway keeps, here and at the others; the result is whether it is on the disk."""
-        offset = self._membership.clock_offset
-        self._relay.note(_noted(one.order, one.at + offset) for one in kept)
+        offset, knows = self._membership.clock_offset, self._relay.knows
+        self._relay.note(_noted(one.order, one.at + offset) for one in kept if not knows(one.order.command))
         self._relay.settle(settled)
         return self._write_journal()
 
@@ -313,9 +313,11 @@ class FleetAborts:
         self._write_journal()
 
     def _write_journal(self) -> Future[bool] | None:
-        if self._journal is None:
-            return None
-        return self._journal.write([_kept(abort, abort.at) for abort in self._relay.noted])
+        # A message about some of a fleet's Aborts must not wait until all are written.
+        return None if self._journal is None else self._journal.write_newest(self._present)
+
+    def _present(self) -> list[KeptAbort]:
+        return [_kept(abort, abort.at) for abort in self._relay.noted]
 
     def _left(self, noted: NotedAbort) -> KeptAbort:
         return _kept(noted, noted.at - self._membership.clock_offset)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from types import SimpleNamespace
 
 import msgspec
@@ -272,6 +273,33 @@ def test_the_aborts_of_a_whole_fleet_are_sent_in_messages_that_each_bus_takes(ab
         assert len(b.noted) > before
     assert b.noted == ids
     assert max(len(Codec(KEY).encode(one)) for one in a.sent) <= LARGEST_NOTIFICATION
+
+
+def test_what_is_heard_while_the_file_is_written_is_written_at_once_afterwards(abc, monkeypatch):
+    a, b, _ = abc
+    written, write = [], b.aborts._journal._write_text
+    monkeypatch.setattr(b.aborts._journal, "_write_text", lambda text: (written.append(text), write(text)))
+    disk = threading.Event()
+    b.aborts._journal._thread.submit(disk.wait, 60.0)
+    for number in range(5):
+        a.abort(f"r{number}", f"abort-000{number}")
+    a.kept.discard_settled({"abort-0003"})
+    a.kept.write_notes()
+    disk.set()
+    ids = ["abort-0000", "abort-0001", "abort-0002", "abort-0004"]
+    assert [one.order.command for one in b.in_file()] == ids
+    # One more is what in_file has written, if it came too late for the first one.
+    assert len(written) <= 2
+
+
+def test_those_of_a_whole_fleet_are_forgotten_everywhere_once_they_are_stored(abc):
+    a, b, _ = abc
+    ids = [f"abort-{number:04}" for number in range(1500)]
+    b.has.update(f"robot-{id}" for id in ids)
+    a.kept.keep(CommandOrder(id, f"robot-{id}", Abort(), "Ada") for id in ids)
+    assert b.ids == b.noted == ids
+    a.store()
+    assert [gateway.ids for gateway in abc] == [gateway.noted for gateway in abc] == [[], [], []]
 
 
 def test_the_file_of_a_gateway_that_comes_back_is_for_whoever_has_the_robots(fleet, abc):

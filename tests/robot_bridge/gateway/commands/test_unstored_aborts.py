@@ -125,7 +125,7 @@ def test_those_of_a_robot_that_goes_to_another_gateway_are_left_to_that_and_come
 def test_those_of_a_robot_that_is_removed_end_wherever_they_are_noted(kept, notes):
     notes.left = (left("abort-0002", 10.0, aborts="target-01"),)
     kept.keep([abort("abort-0001")])
-    kept.end("r1")
+    kept.end(["r1"])
     kept.write_notes()
     assert (kept.robots(), sorted(notes.settled)) == ([], ["abort-0001", "abort-0002"])
 
