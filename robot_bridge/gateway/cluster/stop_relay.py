@@ -326,6 +326,7 @@ class AbortRelay:
         self._unsent: dict[str, None] = {}
         self._unsaid: dict[str, None] = {}
         """settled ones that others are to be sent."""
+        self._is_full = False
         self._sent_all_at = membership.database_time()
         exchange.subscribe(AbortsNoted, self._hear)
         exchange.subscribe(AbortsSettled, self._forget)
@@ -367,19 +368,22 @@ class AbortRelay:
     async def run(self) -> None:
         """Send what the bus did not take, and drop what is too old, until cancelled."""
         while True:
-            await asyncio.sleep(TICK_S)
+            await asyncio.sleep(until_tick(TICK_S))
             now = self._membership.database_time()
-            for id, abort in list(self._noted.items()):
-                if now - abort.at > NOTE_VALID_S:
-                    log.warning("Abort %s of robot %r is dropped: it is too old", id, abort.robot)
-                    self._drop(id)
+            old = [abort for abort in self._noted.values() if now - abort.at > NOTE_VALID_S]
+            for abort in old:
+                log.warning("Abort %s of robot %r is dropped: it is too old", abort.command, abort.robot)
+                self._drop(abort.command)
+            if old:
+                self._keeper.discard([abort.command for abort in old])
+            self._is_full &= len(self._noted) >= MOST_NOTED
             if now - self._sent_all_at >= AGAIN_S:
                 self._send_all(now)
             self.send_changes()
 
     def send_changes(self) -> None:
         """Send what other gateways do not know yet, some of it at a time."""
-        unsent = (self._noted[id] for id in list(self._unsent))
+        unsent = (abort for id in list(self._unsent) if (abort := self._noted.get(id)) is not None)
         for some in itertools.islice(batches(unsent, LARGEST_NOTIFICATION, MOST_ABORTS), AT_ONCE):
             if not self._exchange.send(EVERYBODY, AbortsNoted(self._exchange.gateway, some)):
                 return
@@ -414,7 +418,10 @@ class AbortRelay:
         for abort in message.aborts:
             if abort.at <= self._settled.get(abort.command, -1.0):
                 self._unsaid[abort.command] = None
-            elif abort.command not in self._noted and len(self._noted) < MOST_NOTED:
+            elif abort.command not in self._noted:
+                if len(self._noted) >= MOST_NOTED:
+                    self._warn_of_too_many(message.gw)
+                    continue
                 self._noted[abort.command] = abort
                 new.append(abort)
         if new:
@@ -423,6 +430,16 @@ class AbortRelay:
             self._keeper.keep(new)
         if self._unsaid:
             self.send_changes()
+
+    def _warn_of_too_many(self, gateway: str) -> None:
+        if not self._is_full:
+            log.warning(
+                "more than %d Aborts are not stored: further ones of gateway %s are not noted here, and "
+                "stored by that one alone; see why the database does not take them",
+                MOST_NOTED,
+                gateway,
+            )
+        self._is_full = True
 
     def _forget(self, message: AbortsSettled) -> None:
         ids = [id for id, at in message.commands.items() if (known := self._noted.get(id)) and known.at <= at]

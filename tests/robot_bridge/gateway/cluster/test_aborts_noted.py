@@ -236,14 +236,20 @@ async def test_all_is_sent_again_and_dropped_after_a_day(fleet, abc, monkeypatch
     fleet.now += NOTE_VALID_S
     await run_once(b, monkeypatch)
     assert b.noted == [] and "Abort abort-0001 of robot 'r1' is dropped: it is too old" in caplog.text
+    a.in_file()
+    await run_once(a, monkeypatch)
+    a.aborts._journal._thread.submit(int).result()
+    assert a.ids == a.noted == [] and not a.file.exists()
 
 
-def test_what_another_gateway_notes_is_bounded_and_what_this_one_asked_for_is_not(abc, monkeypatch):
+def test_what_another_gateway_notes_is_bounded_and_what_this_one_asked_for_is_not(abc, monkeypatch, caplog):
     a, b, _ = abc
     monkeypatch.setattr(stop_relay, "MOST_NOTED", 2)
     for number in range(4):
         a.abort(f"r{number}", f"abort-000{number}")
     assert len(a.noted) == 4 and b.noted == ["abort-0000", "abort-0001"]
+    warning = "more than 2 Aborts are not stored: further ones of gateway a are not noted here"
+    assert sum(warning in text for text in caplog.messages) == 2, "two are left out at each of two gateways"
     b.abort("r9", "abort-0009")
     assert b.noted == ["abort-0000", "abort-0001", "abort-0009"]
 
