@@ -6,7 +6,7 @@ import importlib
 from typing import Any
 
 from qgis.core import QgsProject
-from qgis.gui import QgsMapCanvas, QgsMessageBar
+from qgis.gui import QgsApplicationExitBlockerInterface, QgsMapCanvas, QgsMessageBar
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QToolBar, QWidget
 
 from benchmarks.desk_canvas import WINDOW, Stage, site_of, watch_live
@@ -45,6 +45,9 @@ class BareWindow:
 
     def addPluginToMenu(self, menu: str, action: QAction) -> None:  # noqa: N802
         self._window.addAction(action)
+
+    def registerApplicationExitBlocker(self, guard: QgsApplicationExitBlockerInterface) -> None:  # noqa: N802
+        """Accept a guard of QGIS's exit; nobody leaves here."""
 
 
 def live(data: str, number: int, rate: float) -> None:
