@@ -108,8 +108,11 @@ class SqlInterface:
         ]
         # Processed requests are answered, even if another robot's failed. A Ready needs a table that the
         # others do not need: while somebody has that locked, only robots that say Ready wait.
-        saying_ready = [one for one in done if any(outcome.admitted for outcome in one.outcomes)]
-        for some_done in ([one for one in done if one not in saying_ready], saying_ready):
+        saying_ready: list[HandledRequests] = []
+        others: list[HandledRequests] = []
+        for one in done:
+            (saying_ready if any(outcome.admitted for outcome in one.outcomes) else others).append(one)
+        for some_done in (others, saying_ready):
             if some_done:
                 await self._finish(some_done)
         for result in dealt:
