@@ -46,7 +46,7 @@ class BareWindow:
     def addPluginToMenu(self, menu: str, action: QAction) -> None:  # noqa: N802
         self._window.addAction(action)
 
-    def registerApplicationExitBlocker(self, guard: QgsApplicationExitBlockerInterface) -> None:  # noqa: N802
+    def registerApplicationExitBlocker(self, guard: QgsApplicationExitBlockerInterface) -> None:  # noqa: N802 # QGIS
         """Accept a guard of QGIS's exit; nobody leaves here."""
 
 

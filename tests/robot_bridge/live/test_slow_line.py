@@ -56,6 +56,7 @@ class SlowClient:
                     self.stopped_at = self.received
                 self.results += (tail[-8:] + data).count(b'"result"')
                 tail = data[-10:]
+                # Not for anything to happen: this is how slow the line is.
                 time.sleep(len(data) / BYTES_PER_S)
         except ConnectionError:
             pass

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
 from functools import partial
 
@@ -116,21 +117,28 @@ RULES = {
 }
 
 
+@contextlib.contextmanager
+def trigger(url, kind, statements, name, table):
+    """Make an administrator's trigger by ``statements``, on PostgreSQL with a function of the same name."""
+    client = DatabaseClient(url)
+    for statement in statements[kind]:
+        client.sql(statement)
+    yield client
+    client.sql(f"drop trigger {name}" + (f" on {table}" if kind == "postgresql" else ""))
+    if kind == "postgresql":
+        client.sql(f"drop function {name}")
+    client.close()
+
+
 @SERVERS
 async def test_a_row_that_an_administrators_trigger_refuses_is_refused_as_data(url, kind, database):
     """Else the database would count as out of order, and each robot's rows would wait for that one's."""
-    client = DatabaseClient(url)
-    for rule in RULES[kind]:
-        client.sql(rule)
-    refused, done = await asyncio.gather(
-        database.run(add, "r1"), database.run(add, "r2"), return_exceptions=True
-    )
-    assert isinstance(refused, DataRefusedError) and "r1 is out of service" in str(refused)
-    assert done is None and await database.run(names) == ["r2"]
-    client.sql("drop trigger out_of_service" + (" on rr" if kind == "postgresql" else ""))
-    if kind == "postgresql":
-        client.sql("drop function out_of_service")
-    client.close()
+    with trigger(url, kind, RULES, "out_of_service", "rr"):
+        refused, done = await asyncio.gather(
+            database.run(add, "r1"), database.run(add, "r2"), return_exceptions=True
+        )
+        assert isinstance(refused, DataRefusedError) and "r1 is out of service" in str(refused)
+        assert done is None and await database.run(names) == ["r2"]
 
 
 NO_DELETION = {
@@ -149,17 +157,11 @@ NO_DELETION = {
 @SERVERS
 async def test_an_abort_is_written_where_nothing_can_be_withdrawn(url, kind, database):
     """Read first, it stops the robot; the one behind what waits stops it once more."""
-    client = DatabaseClient(url)
-    client.sql("insert into sa (robot, op, params) values ('r1', 'SetPosEnd', '{}')")
-    for statement in NO_DELETION[kind]:
-        client.sql(statement)
-    writing = partial(write_bare_aborts, robots=["r1"], withdrawn=["SetPosEnd"], emergency=True)
-    await database.run(writing)
-    found = client.sql("select op from sa where robot = 'r1' order by urgent desc, id")
-    client.sql("drop trigger kept" + (" on sa" if kind == "postgresql" else ""))
-    if kind == "postgresql":
-        client.sql("drop function kept")
-    client.close()
+    with trigger(url, kind, NO_DELETION, "kept", "sa") as client:
+        client.sql("insert into sa (robot, op, params) values ('r1', 'SetPosEnd', '{}')")
+        writing = partial(write_bare_aborts, robots=["r1"], withdrawn=["SetPosEnd"], emergency=True)
+        await database.run(writing)
+        found = client.sql("select op from sa where robot = 'r1' order by urgent desc, id")
     assert [op for (op,) in found] == ["Abort", "SetPosEnd", "Abort"]
 
 
