@@ -293,10 +293,10 @@ def with_abort_sent(error: Exception, robots: Sequence[str]) -> str:
 
     Where another gateway refused it, its text may say so already.
     """
-    told = f"{listed_names(robots)} had been sent an Abort by then"
-    if not robots or told in str(error):
+    sent = f"{listed_names(robots)} had been sent an Abort by then"
+    if not robots or sent in str(error):
         return str(error)
-    return f"{error}. {told}: look where it stands, then send it on, or abort it"
+    return f"{error}. {sent}: look where it stands, then send it on, or abort it"
 
 
 # --- How to install an optional Python package: the remedy in errors about a missing one

@@ -122,7 +122,7 @@ class UnansweredError(RefusedError):
 class AbortNoter(Protocol):
     """Notes Aborts for the gateway that has, or gets, their robots."""
 
-    def note(self, aborts: Sequence[NotedAbort]) -> None:
+    def note_aborts(self, aborts: Sequence[NotedAbort]) -> None:
         """Have Aborts stored, and sent before anything else of their robots."""
 
     def withdraw(self, ids: Sequence[str]) -> None:
@@ -243,7 +243,7 @@ class RequestRelay:
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
         sent: list[str] = []
         if stops and (not relaying.done() or relaying.exception() is not None):
-            self._noter.note([self._noted(robot, r, operator) for robot, r in stops if _stops(r)])
+            self._noter.note_aborts([self._noted(robot, r, operator) for robot, r in stops if _stops(r)])
             sent = [robot for robot, request in stops if self._send_abort(robot, request)]
         try:
             answers = await relaying
@@ -271,7 +271,7 @@ class RequestRelay:
     ) -> StoreError | RefusedError:
         """Return what says that Aborts are noted, and to whom they went. A pause that fails becomes one."""
         paused = [self._noted(robot, r, operator) for robot, r in stops if isinstance(r, PauseRobot)]
-        self._noter.note(paused)
+        self._noter.note_aborts(paused)
         # Each takes the place of the one that the last pause has left.
         self._noter.withdraw([id for abort in paused if (id := self._paused.pop(abort.robot, None))])
         self._paused.update((abort.robot, abort.command) for abort in paused)

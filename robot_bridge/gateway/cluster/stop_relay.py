@@ -325,7 +325,7 @@ class AbortRelay:
         """the times when Aborts were stored, or found void, the oldest first."""
         self._unsent: dict[str, None] = {}
         self._unsaid: dict[str, None] = {}
-        """settled ones that others are to be sent."""
+        """settled ones that were not sent to others yet."""
         self._is_full = False
         self._sent_all_at = membership.database_time()
         exchange.subscribe(AbortsNoted, self._hear)
@@ -346,7 +346,7 @@ class AbortRelay:
         of = set(robots) if self._noted else set()
         return [abort for abort in self._noted.values() if abort.robot in of]
 
-    def note(self, aborts: Iterable[NotedAbort]) -> None:
+    def note_aborts(self, aborts: Iterable[NotedAbort]) -> None:
         """Note Aborts here, and at the other gateways."""
         for abort in aborts:
             if abort.command not in self._noted:

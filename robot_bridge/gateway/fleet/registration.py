@@ -269,7 +269,9 @@ class FleetAborts:
     def write(self, kept: Sequence[KeptAbort], settled: Sequence[str] = ()) -> Future[bool] | None:
         """Note what this gateway keeps, here and at the others; the result is whether it is on the disk."""
         offset, knows = self._membership.clock_offset, self._relay.knows
-        self._relay.note(_noted(one.order, one.at + offset) for one in kept if not knows(one.order.command))
+        self._relay.note_aborts(
+            _noted(one.order, one.at + offset) for one in kept if not knows(one.order.command)
+        )
         self._relay.settle(settled)
         return self._write_journal()
 
@@ -277,7 +279,7 @@ class FleetAborts:
         """Note what the file of an earlier gateway has, for whoever has the robots; return none."""
         if self._journal is not None:
             left = self._journal.read(self._membership.database_time())
-            self._relay.note(_noted(kept.order, kept.at) for kept in left)
+            self._relay.note_aborts(_noted(kept.order, kept.at) for kept in left)
         return []
 
     def left_for(self, robots: Iterable[str]) -> list[KeptAbort]:
@@ -286,10 +288,10 @@ class FleetAborts:
 
     # --- as AbortNoter of requests about robots elsewhere
 
-    def note(self, aborts: Sequence[NotedAbort]) -> None:
+    def note_aborts(self, aborts: Sequence[NotedAbort]) -> None:
         """Note Aborts, here and at the others, for the gateway that has their robots."""
         if aborts:
-            self._relay.note(aborts)
+            self._relay.note_aborts(aborts)
             self.keep(aborts)
 
     def withdraw(self, ids: Sequence[str]) -> None:

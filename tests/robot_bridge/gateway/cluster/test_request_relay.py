@@ -66,7 +66,7 @@ class Notes:
     def __init__(self):
         self.noted, self.withdrawn = [], []
 
-    def note(self, aborts):
+    def note_aborts(self, aborts):
         self.noted += aborts
 
     def withdraw(self, ids):
