@@ -524,8 +524,12 @@ class StopWriter:
                         alike.clear()
                     alike.append(text)
                     return {some[0]: error}
-                # Of one robot's data, or fence, another one's error says nothing.
-                if type(error) in (StoreError, LockedError) and alike[-MOST_ALIKE:] == [text] * MOST_ALIKE:
+                # An error of one robot's data, or of its fence, says nothing of others.
+                if (
+                    type(error) in (StoreError, LockedError)
+                    and len(alike) >= MOST_ALIKE
+                    and text == alike[-1]
+                ):
                     return dict.fromkeys(some, error)
             half = len(some) // 2
             return {**await search(some[:half]), **await search(some[half:])}
