@@ -62,13 +62,16 @@ def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gatewa
 
 
 def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, gateway, wait, make_robot):
-    # Here the message itself has to bring it to light.
+    # Here the message itself has to bring it to light, neither a timer nor an answer on its way.
     monkeypatch.setattr(connection, "AWAKE_EVERY", HOURS)
+    gateway.mute |= {"get_commands", "get_closures", "get_queue", "get_plans", "get_observations"}
     window = plugin.window
     window.dock.connection_panel._url.setText(gateway.url)
     window.dock.connection_panel._operator.setText("anna")
     window.actions.connect.trigger()
     wait(lambda: gateway._sockets and window.desk.state.link.phase.value == "connected", what="the link")
+    gateway.show(make_robot("r8"))
+    wait(lambda: window.desk.state.robots.row("r8") is not None, what="all that came before")
     lid.asleep = HOURS
     gateway.tell("positions", {"t": time.time(), "robots": [to_json(make_robot("r9"))]})
     wait(lambda: len(gateway.requests_of("hello")) == 2, 10, "another link")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
-from tests.support.databases.database_client import DatabaseClient
+from tests.support.databases.database_client import PATIENCE_S, DatabaseClient
 
 CHANGES = [
     "alter table rr add column seen boolean",
@@ -29,9 +31,21 @@ def say(client):
     return client.sql("select id, robot from rr")
 
 
+def leave(client, new_database):
+    """Close the connection and wait until the server has ended it: a loaded server does so later."""
+    ((backend,),) = client.sql("select pg_backend_pid()")
+    client.close()
+    other = DatabaseClient(new_database.another("postgresql"))
+    deadline = time.monotonic() + PATIENCE_S
+    while other.sql("select 1 from pg_stat_activity where pid = ?", backend):
+        assert time.monotonic() < deadline, f"the server holds a connection closed {PATIENCE_S} s ago"
+        time.sleep(0.01)
+    other.close()
+
+
 def test_it_is_given_again_with_no_row_and_counts_from_one(client, new_database):
     assert say(client) == [(1, "r1")]
-    client.close()
+    leave(client, new_database)
     assert new_database("postgresql") == client.url.render_as_string(hide_password=False)
     assert say(client) == [(1, "r1")]
 
@@ -47,5 +61,5 @@ def test_nobody_is_given_what_another_is_connected_to(client, new_database):
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_made_otherwise_is_not_given_again(client, new_database, change):
     client.sql(change)
-    client.close()
+    leave(client, new_database)
     assert new_database("postgresql") != client.url.render_as_string(hide_password=False)
