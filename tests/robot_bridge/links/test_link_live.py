@@ -52,8 +52,11 @@ def names():
 
 def place(link, desk, names, *, abilities=DRIVES):
     """Let robots stand side by side, from (20, 8) on, and wait until a desk sees them."""
-    for n, name in enumerate(names):
+    for name in names:
         link.do("add", name, abilities)
+    # On a busy machine the link may connect later than it keeps a position.
+    desk.until(lambda: desk.robots.keys() >= {*names}, 15.0)
+    for n, name in enumerate(names):
         link.do("position", name, SendPos(20.0 + 5 * n, 8.0, 0.0, 0.0))
     desk.wait_for_robots(*names)
 

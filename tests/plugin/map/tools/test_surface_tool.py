@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
+from fleet_supervisor.plugin.layers import road_surfaces
 from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
 from fleet_supervisor.plugin.layers.roles import ROAD_SURFACE, set_role
 from fleet_supervisor.plugin.map.tools.road_tools import SurfaceAction
@@ -122,7 +123,8 @@ def test_a_click_before_the_surfaces_are_read_is_answered_when_they_are(entry, l
     assert iface.said[0][0].startswith("Asphalt")
 
 
-def test_a_click_is_answered_once_from_what_others_read(entry, layer, iface):
+def test_a_click_is_answered_once_from_what_others_read(entry, layer, iface, monkeypatch):
+    monkeypatch.setattr(road_surfaces, "_WAIT_S", BUSY * road_surfaces._WAIT_S)
     entry.action.trigger()
     # As an expression does.
     entry.tool._store.read([layer])
