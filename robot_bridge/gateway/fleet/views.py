@@ -37,7 +37,20 @@ from ...core.messages.positions import (
     View,
 )
 from ..model.events import Encoded, handles
-from ..model.robot_columns import ACCURACY, BATTERY, DOUBTED, LOST, STATES, X, Y
+from ..model.robot_columns import (
+    ACCURACY,
+    BATTERY,
+    DOUBTED,
+    LOST,
+    POSE_AT,
+    RECEIVED_AT,
+    STATES,
+    THETA,
+    ReportedRows,
+    V,
+    X,
+    Y,
+)
 from ..model.robots import Robot, Robots, RobotSelection
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
@@ -230,26 +243,38 @@ def _density(cells: Cells, counts: npt.NDArray[np.intp]) -> Density:
 _COLUMNS = (*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS)
 _AT = {name: place for place, name in enumerate(_COLUMNS)}
 _TEXTS_AT = [_AT[name] for name in POSITION_TEXTS]
-_AGES = {"age": "received_at", "pose_age": "pose_at"}
+_AGES = {"age": ("received_at", RECEIVED_AT), "pose_age": ("pose_at", POSE_AT)}
+"""Where the times are of a robot of this gateway, and in the numbers that others report."""
+_MOVING = {"x": X, "y": Y, "theta": THETA, "v": V}
 
 
 class RowStore:
     """The newest row of each robot that a desk sees; made again when its robot has changed."""
 
-    def __init__(self) -> None:
+    def __init__(self, robots: Robots) -> None:
+        self._robots = robots
         self._forget()
 
-    def table(self, robots: Sequence[Robot], now: float) -> tuple[dict[str, Floats], list[str]]:
-        """Return the table as :func:`position_table`."""
-        if not robots:
+    def table(self, names: Sequence[str], now: float) -> tuple[dict[str, Floats], list[str]]:
+        """Return the table of existing robots as :func:`position_table`."""
+        if not names:
             return {name: np.empty(0) for name in POSITION_ALWAYS}, []
-        if len(self._words) > SPARE + 2 * len(self._rows) or len(self._rows) > SPARE + 4 * len(robots):
+        if len(self._words) > SPARE + 2 * len(self._rows) or len(self._rows) > SPARE + 4 * len(names):
             # Words that no robot uses any more, and robots that no desk sees.
             self._forget()
-        rows = self._rows_of(robots, now)
+        rows = self._rows_of(names)
+        reported = self._robots.reported(names)
+        is_own = np.ones(len(names), dtype=np.bool_)
+        is_own[reported.places] = False
+        own = self._robots.known(names[place] for place in np.flatnonzero(is_own).tolist())
+        self._write_changed(rows[is_own], own, now)
+        if len(reported.places):
+            self._update(rows[reported.places], names, reported, now)
         table = self._table[:, rows]
-        for name, since in _AGES.items():
-            times = np.array([getattr(robot, since) for robot in robots], np.float64)
+        for name, (since, number) in _AGES.items():
+            times = np.empty(len(names))
+            times[is_own] = np.array([getattr(robot, since) for robot in own], np.float64)
+            times[reported.places] = reported.table[number]
             table[_AT[name]] = np.maximum(now - times, 0.0).round(3)
         words = self._own_words(table)
         known = ~np.isnan(table).all(axis=1)
@@ -257,41 +282,59 @@ class RowStore:
 
     def _forget(self) -> None:
         self._rows: dict[str, int] = {}
-        self._revisions: list[int] = []
+        self._revisions = np.empty(0, np.int64)
+        self._described = np.empty(0, np.int64)
+        """the revisions of robots when their row was last changed, and when it was last made as a whole."""
         self._table = np.empty((len(_COLUMNS), 0))
         self._words: dict[str, int] = {}
 
-    def _rows_of(self, robots: Sequence[Robot], now: float) -> list[int]:
-        known, revisions = self._rows, self._revisions
-        rows, changed = [], []
-        for robot in robots:
-            row = known.get(robot.name)
-            if row is None:
-                row = known[robot.name] = len(revisions)
-                revisions.append(-1)
-            if revisions[row] != robot.revision:
-                revisions[row] = robot.revision
-                changed.append((row, robot))
-            rows.append(row)
-        if changed:
-            self._write(changed, now)
+    def _rows_of(self, names: Sequence[str]) -> npt.NDArray[np.intp]:
+        known = self._rows
+        rows = np.array([known.setdefault(name, len(known)) for name in names], np.intp)
+        missing = len(known) - len(self._revisions)
+        if missing > 0:
+            more = max(missing, len(self._revisions))
+            self._revisions = np.concatenate([self._revisions, np.full(more, -1)])
+            self._described = np.concatenate([self._described, np.full(more, -1)])
+            self._table = np.concatenate([self._table, np.full((len(_COLUMNS), more), np.nan)], axis=1)
         return rows
 
-    def _write(self, changed: list[tuple[int, Robot]], now: float) -> None:
-        missing = len(self._revisions) - self._table.shape[1]
-        if missing > 0:
-            more = np.empty((len(_COLUMNS), max(missing, self._table.shape[1])))
-            self._table = np.concatenate([self._table, more], axis=1)
-        columns, words = position_table([robot for _, robot in changed], now)
+    def _update(
+        self, rows: npt.NDArray[np.intp], names: Sequence[str], reported: ReportedRows, now: float
+    ) -> None:
+        """Update the rows of robots of other gateways: of most only position and state have changed."""
+        is_whole = self._described[rows] >= reported.described
+        # With its first position a robot has a battery and a status, too.
+        is_whole &= ~np.isnan(self._table[_AT["x"], rows])
+        others = reported.places[~is_whole].tolist()
+        self._write_changed(rows[~is_whole], self._robots.known(names[place] for place in others), now)
+        moved = np.flatnonzero(is_whole & (self._revisions[rows] != reported.revisions))
+        if not len(moved):
+            return
+        at = rows[moved]
+        for name, number in _MOVING.items():
+            self._table[_AT[name]][at] = reported.table[number][moved]
+        words = np.array([self._words.setdefault(word, len(self._words)) for word in _STATES], np.float64)
+        self._table[_AT["state"]][at] = words[reported.states[moved]]
+        self._revisions[at] = reported.revisions[moved]
+
+    def _write_changed(self, rows: npt.NDArray[np.intp], robots: Sequence[Robot], now: float) -> None:
+        revisions = np.array([robot.revision for robot in robots], np.int64)
+        changed = np.flatnonzero(self._revisions[rows] != revisions)
+        if not len(changed):
+            return
+        at, robots = rows[changed], [robots[place] for place in changed.tolist()]
+        columns, words = position_table(robots, now)
         own = np.array([self._words.setdefault(word, len(self._words)) for word in words], np.float64)
-        fresh = np.full((len(_COLUMNS), len(changed)), np.nan)
+        fresh = np.full((len(_COLUMNS), len(robots)), np.nan)
         for name, values in columns.items():
             if name in POSITION_TEXTS:
                 known = ~np.isnan(values)
                 fresh[_AT[name], known] = own[values[known].astype(np.intp)]
             else:
                 fresh[_AT[name]] = values
-        self._table[:, [row for row, _ in changed]] = fresh
+        self._table[:, at] = fresh
+        self._revisions[at] = self._described[at] = revisions[changed]
 
     def _own_words(self, table: Floats) -> list[str]:
         """Return the words that ``table`` uses, and renumber its texts to them."""
@@ -315,7 +358,7 @@ class FleetViews:
     def __init__(self, robots: Robots, site: Ground, clock: Clock) -> None:
         self.robots = robots
         self.clock = clock
-        self.rows = RowStore()
+        self.rows = RowStore(robots)
         self._site = site
         self._places: FleetPlaces | None = None
         self._due_at = -math.inf
@@ -381,16 +424,16 @@ class ViewWatch:
         fleet = self._choose()
         news: dict[str, Any] = {}
         removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in sent]
-        fresh: list[Robot] = []
+        fresh: list[str] = []
         selection = self._selection
         if selection is None or robots.is_outdated(selection):
             self._selection = selection = robots.select(self._chosen)
             self._sent = set(selection.names)
-            fresh = robots.known(name for name in selection.names if name not in sent)
+            fresh = [name for name in selection.names if name not in sent]
             if untracked := sorted(sent - self._sent - set(removed)):
                 news["untracked"] = untracked
-        met = {robot.name for robot in fresh}
-        fresh += [robot for robot in robots.changed_of(selection, seen) if robot.name not in met]
+        met = set(fresh)
+        fresh += [name for name in robots.changed_of(selection, seen) if name not in met]
         if fleet != self._seen_view:
             news["view"] = _known_fields(fleet)
         self._seen, self._seen_view = robots.revision, fleet
@@ -427,15 +470,14 @@ class ViewWatch:
         )
 
     def _encoded(
-        self, robots: Sequence[Robot], removed: Collection[str], news: dict[str, Any], *, everything: bool
+        self, names: Sequence[str], removed: Collection[str], news: dict[str, Any], *, everything: bool
     ) -> bytes:
         now, t = self._views.clock.time(), round(time.time(), 3)
         if self.form is PositionForm.ROWS:
-            rows = reports_of(robots, now, ReportRow)
+            rows = reports_of(self._views.robots.known(names), now, ReportRow)
             params = {**positions(rows, list(removed), everything=everything), **news}
             return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})
-        columns, words = self._views.rows.table(robots, now)
-        names = [robot.name for robot in robots]
+        columns, words = self._views.rows.table(names, now)
         news = {"removed": list(removed), "everything": everything, **news}
         return packed_table(t, names, columns, words, self.form, **news)
 

@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.clock import ClockStep
-from ...core.messages.base import COORDINATE, SPEED, THETA
+from ...core.messages.base import COORDINATE, SPEED
+from ...core.messages.base import THETA as THETA_RANGE
 from ...core.messages.robots import SendPos
 from ...core.messages.safety import PathDeclaration, RobotState
 from .position_checks import STANDING_SPEED
@@ -24,13 +25,12 @@ ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
 only seen, its last reported position is not believed, and it has sent a message since Stopped. Whether its
 position is believed is reported with its details."""
 REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN | HEARD_SINCE
-X, Y, V, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 3, 4, 5, 6, 7
+X, Y, THETA, V, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = range(8)
 """Rows of the table of numbers: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's
 clock, battery (0 to 1), and accuracy (m), which other gateways do not report."""
 NUMBERS = 8
 REPORTED_NUMBERS = 6
 """count of numbers of a robot in a message, the first of those; ages in seconds in place of times."""
-_THETA = 2
 _OF_A_POSE = ("x", "y", "theta", "v", "battery", "status")
 """Known fields of the pose of a robot of another gateway."""
 STATES = tuple(RobotState)
@@ -39,7 +39,7 @@ _CODES = {state: code for code, state in enumerate(STATES)}
 FRESH, STALE, LOST, OFFLINE = (
     _CODES[state] for state in (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 )
-_LARGEST = np.array([[COORDINATE[1]], [COORDINATE[1]], [THETA[1]], [SPEED[1]]])
+_LARGEST = np.array([[COORDINATE[1]], [COORDINATE[1]], [THETA_RANGE[1]], [SPEED[1]]])
 _SPARE = 256
 
 Numbers = npt.NDArray[np.float64]
@@ -127,6 +127,20 @@ class RobotPlaces(NamedTuple):
             np.concatenate([self.states, other.states]),
             np.concatenate([self.flags, other.flags]),
         )
+
+
+class ReportedRows(NamedTuple):
+    """What other gateways reported last of n robots, ``places`` (n,) among some names.
+
+    ``table`` is (:data:`NUMBERS`, n), the rest (n,): codes of states, the revision of the last change, and
+    the one of the last change beyond position and state.
+    """
+
+    places: Rows
+    table: Numbers
+    states: Flags
+    revisions: Counts
+    described: Counts
 
 
 class RobotRecord(Protocol):
@@ -221,6 +235,8 @@ class RobotColumns:
         self._owners = np.empty(0, dtype=np.int32)
         self._revisions = np.empty(0, dtype=np.int64)
         """-1 for a free row."""
+        self._described = np.empty(0, dtype=np.int64)
+        """the revision of the last change beyond position and state."""
         self._lives = np.empty(0, dtype=np.int64)
         """how often each row has been free."""
         self._given = 0
@@ -261,7 +277,7 @@ class RobotColumns:
         )
         self._states[row] = _CODES[robot.state]
         self._owners[row] = self._owner(robot.gateway or "")
-        self._revisions[row] = robot.revision
+        self._revisions[row] = self._described[row] = robot.revision
 
     def move(self, name: str, pose: SendPos, pose_at: float, at: float, revision: int) -> None:
         """Write the pose of a robot with a row at time ``pose_at``, received at ``at``; nothing else."""
@@ -286,13 +302,24 @@ class RobotColumns:
         row = self._rows[name]
         self._numbers[BATTERY, row] = math.nan if battery is None else battery
         self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED | HEARD_SINCE) | flags
-        self._revisions[row] = revision
+        self._revisions[row] = self._described[row] = revision
 
     def find(self, names: Sequence[str]) -> RobotRows:
         """Return the rows of the robots of ``names`` that have one."""
         rows = np.array([self._rows.get(name, -1) for name in names], dtype=np.intp)
         places = np.flatnonzero(rows >= 0)
         return RobotRows(rows[places], places, self.layout)
+
+    def reported(self, robots: RobotRows) -> ReportedRows:
+        """Return what is in the rows of ``robots``."""
+        rows = robots.rows
+        return ReportedRows(
+            robots.places,
+            self._numbers[:, rows],
+            self._states[rows],
+            self._revisions[rows],
+            self._described[rows],
+        )
 
     def changed_places(self, robots: RobotRows, since: int) -> Rows:
         """Return the ``places`` of those that changed after revision ``since``."""
@@ -317,9 +344,9 @@ class RobotColumns:
         counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
         placed = counts & np.isfinite(columns[POSE_AT])
         placed &= (np.abs(columns[: len(_LARGEST)]) <= _LARGEST).all(axis=0)
-        turned = placed & (np.abs(columns[_THETA]) > math.pi)
+        turned = placed & (np.abs(columns[THETA]) > math.pi)
         if turned.any():
-            columns[_THETA, turned] -= math.tau * np.round(columns[_THETA, turned] / math.tau)
+            columns[THETA, turned] -= math.tau * np.round(columns[THETA, turned] / math.tau)
         columns[POSE_AT:] = report.wall - columns[POSE_AT:]
         flags = report.flags
         if not placed.all():
@@ -330,8 +357,11 @@ class RobotColumns:
         for own, column in zip(self._numbers, places, strict=False):
             own[at] = column
         self._numbers[RECEIVED_AT][rows] = columns[RECEIVED_AT]
-        self._flags[rows] = (self._flags[rows] & DOUBTED) | (flags & REPORTED_FLAGS)
-        return Observed(self._changed(rows, revision), missing, all_named)
+        before = self._flags[rows]
+        self._flags[rows] = (before & DOUBTED) | (flags & REPORTED_FLAGS)
+        newest = self._changed(rows, revision)
+        self._described[rows[self._flags[rows] != before]] = newest
+        return Observed(newest, missing, all_named)
 
     def _rows_of(self, report: ReportedElsewhere) -> tuple[Rows, bool]:
         numbering = self._numberings.get(report.gateway)
@@ -473,6 +503,7 @@ class RobotColumns:
         self._states = np.concatenate([self._states, np.zeros(more, np.uint8)])
         self._owners = np.concatenate([self._owners, np.zeros(more, np.int32)])
         self._revisions = np.concatenate([self._revisions, np.full(more, -1, np.int64)])
+        self._described = np.concatenate([self._described, np.full(more, -1, np.int64)])
         self._cells = [memoryview(column) for column in (*self._numbers[:BATTERY], self._revisions)]
         self._lives = np.concatenate([self._lives, np.zeros(more, np.int64)])
 

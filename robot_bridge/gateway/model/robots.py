@@ -24,6 +24,7 @@ from .robot_columns import (
     RECEIVED_AT,
     DescribedElsewhere,
     ReportedElsewhere,
+    ReportedRows,
     RobotColumns,
     RobotPlaces,
     RobotRows,
@@ -518,12 +519,15 @@ class Robots:
         layouts = self._own_columns.layout, self._other_columns.layout
         return (selection.own.layout, selection.others.layout) != layouts
 
-    def changed_of(self, selection: RobotSelection, since: int) -> list[Robot]:
-        """Return the robots of a selection, which is not outdated, that changed after revision ``since``."""
+    def changed_of(self, selection: RobotSelection, since: int) -> list[str]:
+        """Return the names in a selection, which is not outdated, of robots changed after ``since``."""
         own = self._own_columns.changed_places(selection.own, since)
         others = self._other_columns.changed_places(selection.others, since)
-        places = np.sort(np.concatenate([own, others])).tolist()
-        return self.known(selection.names[place] for place in places)
+        return [selection.names[place] for place in np.sort(np.concatenate([own, others])).tolist()]
+
+    def reported(self, names: Sequence[str]) -> ReportedRows:
+        """Return what other gateways reported last of those of ``names`` that they have."""
+        return self._other_columns.reported(self._other_columns.find(names))
 
     def _find(self, name: str) -> Robot | None:
         robot = self._robots.get(name) or self._elsewhere.get(name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,7 +28,13 @@ from robot_bridge.core.position_frame import split_frame
 from robot_bridge.gateway.fleet import views as views_module
 from robot_bridge.gateway.fleet.operator_updates import position_table
 from robot_bridge.gateway.fleet.views import DensityGrid, FleetViews, RowStore, ViewWatch
-from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
+from robot_bridge.gateway.model.robot_columns import (
+    ENDED,
+    LOCATED,
+    ONLY_SEEN,
+    DescribedElsewhere,
+    ReportedElsewhere,
+)
 from robot_bridge.gateway.model.robots import Robots
 
 BOUNDS = (0.0, 0.0, 100.0, 100.0)
@@ -375,10 +382,31 @@ def test_each_cell_counts_the_robots_in_it(robots, view):
 # --- rows -------------------------------------------------------------------------------------------------
 
 
-def test_stored_rows_say_what_a_table_made_anew_says():
-    fleet, store = Fleet(), RowStore()
+def reported_elsewhere(fleet, rng, moment):
+    """Have another gateway report one of its robots: of some no place is known."""
+    name, wall = f"e{rng.integers(0, 8)}", fleet.clock.time()
+    kind = rng.integers(0, 8)
+    if kind == 0 and name in fleet.robots and fleet.robots.gateway_of(name) == "south":
+        described = DescribedElsewhere(0.25, f"status {moment}", None, 0.1, None, "targets")
+        fleet.robots.describe_elsewhere(name, "south", described)
+    elif kind == 1:
+        fleet.put(name, float(moment))
+        fleet.robots.let_go(name, "south")
+    elif kind == 2:
+        fleet.robots.remove(name)
+    else:
+        x = math.nan if kind < 5 else float(moment)
+        table = np.array([[x, 1.0, 4.0, 0.25, 0.5, rng.uniform(0.0, 2.0)]], dtype="<f4")
+        flags = np.array([rng.choice([LOCATED, LOCATED | ENDED, ONLY_SEEN])], dtype=np.uint8)
+        number = np.array([int(name[1:])], dtype=np.uint32)
+        fleet.robots.observe_elsewhere(ReportedElsewhere("south", 1, number, [name], table, flags, wall))
+
+
+def test_stored_rows_say_what_a_new_table_says():
+    fleet = Fleet()
+    store = RowStore(fleet.robots)
     rng = np.random.default_rng(3)
-    for moment in range(60):
+    for moment in range(200):
         fleet.clock.advance(0.37)
         for number in rng.integers(0, 12, 3).tolist():
             more = {"battery": 0.5, "status": f"state {moment}"} if number % 2 else {}
@@ -386,21 +414,26 @@ def test_stored_rows_say_what_a_table_made_anew_says():
             fleet.robots.assign(f"r{number}", f"command-{moment}" if moment % 3 else None)
             if number % 5 == 1:
                 fleet.robots.disbelieve(f"r{number}", "websocket", fleet.clock.time(), f"leap {moment}")
+        for _ in range(3):
+            reported_elsewhere(fleet, rng, moment)
+        fleet.robots.assign("e1", f"command-{moment // 9}")
+        fleet.robots.age(fleet.clock.time())
         chosen = [robot for robot in fleet.robots.changed(-1) if rng.random() < 0.6]
-        now = fleet.clock.time()
-        assert in_words(*store.table(chosen, now)) == in_words(*position_table(chosen, now))
+        now, names = fleet.clock.time(), [robot.name for robot in chosen]
+        assert in_words(*store.table(names, now)) == in_words(*position_table(chosen, now))
 
 
 def test_rows_of_whom_nobody_sees_any_more_are_forgotten(monkeypatch):
     monkeypatch.setattr(views_module, "SPARE", 3)
-    fleet, store = Fleet(), RowStore()
+    fleet = Fleet()
+    store = RowStore(fleet.robots)
     for number in range(50):
         fleet.put(f"r{number}", 1.0, status=f"state {number}")
-        store.table(fleet.robots.known([f"r{number}"]), 0.0)
+        store.table([f"r{number}"], 0.0)
     assert len(store._rows) <= 9
     for number in range(50):
         fleet.put("r1", 1.0, status=f"more {number}")
-        _, words = store.table(fleet.robots.known(["r1"]), 0.0)
+        _, words = store.table(["r1"], 0.0)
         assert f"more {number}" in words
     assert len(store._words) <= 20
 
