@@ -67,7 +67,7 @@ class NewestBatches:
 
 # --- Positions of robots: changes are sent in columns ---
 
-POSITION_TICK_S = 0.2
+POSITION_TICK_S = 0.25
 """seconds between messages: only the newest position of each robot in a tick is sent."""
 POSITION_OLD_S = 1.0
 """seconds after which a message is dropped: it was delayed, and newer ones follow it."""
@@ -101,7 +101,7 @@ class PositionRelay:
     async def run(self) -> None:
         """Send until cancelled."""
         while True:
-            await wait_at_most(self._asked, POSITION_TICK_S)
+            await wait_at_most(self._asked, until_tick(POSITION_TICK_S))
             self._asked.clear()
             self.send_changes()
 
