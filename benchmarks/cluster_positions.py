@@ -29,8 +29,10 @@ from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 
 GATEWAYS = 4
-ROBOTS, RATE = size(1250, 50), 1.0
+ROBOTS, RATE = size(2500, 50), 1.0
 """robots of a gateway, and how often each says where it is in a second."""
+STOPPED = size(1250, 50)
+"""robots of a gateway that are stopped."""
 NEAR, DESK_RATE = size(500, 20), 10.0
 """robots in a view that shows them one by one, and frames a second."""
 TURNS = size(6, 2)
@@ -53,7 +55,8 @@ LATEST_MS = 1000 / DESK_RATE + POSITION_TICK_S * 1000 + ACROSS_MS
 TEXT = """\
 {gateways} gateways of one fleet on PostgreSQL, which waits for its disk, and one NATS server, with {robots}
 robots each on WebSockets, {all_robots} in all; and beside them, in the same run, {gateways} gateways that
-each serve a fleet of their own on PostgreSQL with {robots}. Robots say where they are {rate:g} times a
+each serve a fleet of their own on PostgreSQL with {robots}: those of one of the others, at the same places.
+Robots say where they are {rate:g} times a
 second. Each gateway has two desks at {desk_rate:g} Hz, as the panel in QGIS asks: one shows {near} robots, of
 all gateways of its fleet, and one the whole site, as a density. All of it is on this machine's {cpus}
 processors, the robots of each gateway and the desks of each fleet in processes of their own. The robots of
@@ -145,21 +148,33 @@ class Drive(NamedTuple):
 
 
 class Fleet(Gateways):
-    """Gateways, each with ``robots`` of its own, which go on at another one where they ``follow``."""
+    """Gateways, each with ``robots`` of its own, which go on at another one where they ``follow``.
 
-    def __init__(self, database: PostgreSql, count: int, robots: int, *, follow: bool = False) -> None:
-        self._robots, self._follow = robots, follow
+    The robots of gateway n are each ``stride``-th, ``count``-th without one, from ``first`` + n on.
+    """
+
+    def __init__(
+        self,
+        database: PostgreSql,
+        count: int,
+        robots: int,
+        *,
+        first: int = 0,
+        stride: int = 0,
+        follow: bool = False,
+    ) -> None:
+        self._robots, self._first, self._stride, self._follow = robots, first, stride or count, follow
         super().__init__(database, count, 2 * count * robots)
 
     def start(self, count: int, room: int) -> None:
         """Start the gateways, and their robots; return when every robot has its map."""
         super().start(count, room)
-        plan = {"host": "127.0.0.1", "robots": self._robots, "stride": count}
+        plan = {"host": "127.0.0.1", "robots": self._robots, "stride": self._stride}
         others = self.addresses if self._follow else []
         self.crowds = [
             self.begin(
                 "benchmarks.cluster_swarm",
-                {**plan, "port": one.port, "first": number, "gateways": [one.address, *others]},
+                {**plan, "port": one.port, "first": self._first + number, "gateways": [one.address, *others]},
             )
             for number, one in enumerate(self.gateways)
         ]
@@ -173,7 +188,7 @@ class Fleet(Gateways):
         for crowd in self.crowds:
             crowd.tell(begin=begin, seconds=seconds, rate=rate, measured=measured)
         wall = time.time() + begin - time.monotonic()
-        return Drive(begin, {"crowds": len(self.crowds), "robots": self._robots, "rate": rate, "begin": wall})
+        return Drive(begin, {"crowds": self._stride, "robots": self._robots, "rate": rate, "begin": wall})
 
     def wait_until_calm(self) -> None:
         """Wait until the gateways have stored what came of a stop."""
@@ -221,11 +236,14 @@ class WatchedFleet:
 
 def _turns(database: PostgreSql) -> Turns:
     with ExitStack() as stack:
-        apart = [WatchedFleet(stack.enter_context(Fleet(database, 1, ROBOTS))) for _ in range(GATEWAYS)]
+        apart = [
+            WatchedFleet(stack.enter_context(Fleet(database, 1, ROBOTS, first=quarter, stride=GATEWAYS)))
+            for quarter in range(GATEWAYS)
+        ]
         several = WatchedFleet(stack.enter_context(Fleet(database, GATEWAYS, ROBOTS)))
         turns = Turns([], [], [])
-        for _ in range(TURNS):
-            turns.one.extend(_turn(apart[:1]))
+        for number in range(TURNS):
+            turns.one.extend(_turn([apart[number % GATEWAYS]]))
             turns.apart.append(_turn(apart))
             turns.several.extend(_turn([several]))
         return turns
@@ -247,9 +265,13 @@ def _of_the_bus(fleet: Fleet) -> float:
 
 
 def _subscriptions(count: int) -> list[dict[str, Any]]:
-    """Return what the desks ask for: at each of ``count`` gateways robots one by one, and a density."""
+    """Return what the desks ask for: at each of ``count`` gateways robots one by one, and a density.
+
+    Where one gateway has a quarter of the robots, a view of as many of them is larger.
+    """
     rows = NEAR // ROW + 1
     columns = NEAR // rows
+    rows *= GATEWAYS // count
     found = []
     for number in range(count):
         x, y = home(number * rows * ROW)
@@ -265,7 +287,7 @@ def _subscriptions(count: int) -> list[dict[str, Any]]:
 def _stopped(database: PostgreSql) -> dict[str, list[Stop]]:
     """Return what came of emergency stops, by what was dead or frozen."""
     others = list(range(1, GATEWAYS))
-    with Fleet(database, GATEWAYS, ROBOTS) as fleet:
+    with Fleet(database, GATEWAYS, STOPPED) as fleet:
         desks = fleet.begin("benchmarks.cluster_crowd", asdict(Desks(fleet.addresses, 0, RATE, 0.0)))
         desks.line()
         # Robots have just got their maps.
@@ -304,8 +326,8 @@ def _stop(
             if number not in without:
                 crowd.tell(stop=made["stop"])
                 found = crowd.line()
-                if found["heard"] < ROBOTS:
-                    missed = ROBOTS - found["heard"]
+                if found["heard"] < STOPPED:
+                    missed = STOPPED - found["heard"]
                     raise RuntimeError(f"{missed} robots of gateway {number} did not hear of {made['stop']}")
                 last = max(last, found["last"])
                 in_force.append(min(next(by_desks), (found["first"] - made["began"]) * 1e3))
@@ -362,7 +384,7 @@ def report(turns: Turns, stops: dict[str, list[Stop]]) -> Part:
         **{"tick": POSITION_TICK_S * 1000, "rows": rows, "turns": TURNS, "seconds": SECONDS},
         **{"share": share, "apart": turns.share_apart()},
         across_goal=goal(f"p99 at most {LATEST_MS:.0f} ms", percentile(across, 99) <= LATEST_MS),
-        **{"stops": STOPS, "well_stops": WELL_STOPS, "stopped": GATEWAYS * ROBOTS, "rows_of_stops": stopped},
+        **{"stops": STOPS, "well_stops": WELL_STOPS, "stopped": GATEWAYS * STOPPED, "rows_of_stops": stopped},
         in_force_goal=goal(f"p99 at most {IN_FORCE_MS} ms", percentile(in_force, 99) <= IN_FORCE_MS),
         last_goal=goal(f"at most {LAST_MS} ms", last <= LAST_MS),
         share_goal=f"{goal(f'at least {SHARE}', share.median >= SHARE).capitalize()}.",
