@@ -9,6 +9,13 @@ export function element(name, text = "") {
   return made;
 }
 
+/** Show in the panel's element `id` what became of what was asked. */
+export function showAnswer(id, text, refused) {
+  const place = document.getElementById(id);
+  place.textContent = text;
+  place.classList.toggle("refused", refused);
+}
+
 export class Banners {
   constructor(place) {
     this._place = place;

@@ -5,7 +5,9 @@ import { Banners, element } from "/field/banners.js";
 import { PositionBudget } from "/field/budget.js";
 import { AnswerError, Connection, fetchSite, newId, otherPages, SILENT_AFTER_MS, steadyNow } from "/field/connection.js";
 import { SiteMap } from "/field/map.js";
-import { RobotList, stateOf } from "/field/robot-list.js";
+import { OwnPosition } from "/field/own-position.js";
+import { RobotList } from "/field/robot-list.js";
+import { RobotPanel } from "/field/robot-panel.js";
 import { EmergencyStop } from "/field/stop.js";
 import { TargetPanel } from "/field/target.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
@@ -52,6 +54,8 @@ class Field {
       () => this.account?.role ?? (this.isSigningIn ? "" : null),
     );
     this.banners = new Banners(by("banners"));
+    this.panel = new RobotPanel();
+    this.ownPosition = new OwnPosition(this.map, this.banners);
     this._listenToGateway();
     this._listenToPage();
     setInterval(() => this._tick(), 1000);
@@ -366,7 +370,7 @@ class Field {
 
   _select(name, { close = false } = {}) {
     this.selected = name;
-    by("robot-answer").textContent = "";
+    this.panel.answer("");
     this._endTarget();
     if (close) this._close("menu");
     by("robot").hidden = name === null;
@@ -384,43 +388,22 @@ class Field {
   _showRobot() {
     const name = this.selected;
     if (name === null || this.target.isOpen) return;
-    const one = this.robots.get(name), task = this.tasks.get(name), role = this.account?.role ?? "viewer";
-    by("robot-name").textContent = name;
-    const since = one ? (steadyNow() - one.at) / 1000 : 0, facts = [];
-    if (one) {
-      facts.push(stateOf(one, this.isCurrent));
-      // Of very many robots no more than state and place is told.
-      if (one.age !== undefined) facts.push(tr("heard {s} s ago", { s: Math.round(one.age + since) }));
-      if (one.x === undefined) facts.push(tr("has not said where it is"));
-      if (one.v !== undefined) facts.push(`${one.v.toFixed(1)} m/s`);
-      if (one.pose_age !== undefined) facts.push(tr("position {s} s old", { s: Math.round(one.pose_age + since) }));
-      if (one.battery !== undefined) facts.push(tr("battery {n} %", { n: Math.round(100 * one.battery) }));
-      if (one.doubt) facts.push(one.doubt);
-      // As rows say it to programs that do not know the doubt.
-      if (one.status && one.status !== one.doubt) facts.push(one.status);
-    }
-    by("robot-facts").textContent = facts.join(" · ");
-    const step = task?.steps?.at(-1);
-    by("robot-task").textContent = task
-      ? tr("Last task: {task}", { task: [task.op, task.state, step?.reason].filter(Boolean).join(", ") })
-      : "";
-    const may = role !== "viewer";
-    for (const id of ["abort", "pause", "resume", "target", "coordinates"]) by(id).disabled = !may;
-    if (!may) this._answer("robot-answer", tr("Your role, {role}, may only look.", { role }), true);
+    const role = this.account?.role ?? "viewer";
+    this.panel.show(name, { robot: this.robots.get(name), task: this.tasks.get(name), role, isCurrent: this.isCurrent });
   }
 
   /**
-   * Ask for something of a robot, and say what became of it: at `into`, unless another robot is chosen by then, or
+   * Ask for something of a robot, and say what became of it: in `panel`, unless another robot is chosen by then, or
    * something else was pressed or another target of it is made: then where it is read all the same.
    */
-  async _do(what, ask, into = "robot-answer") {
+  async _do(what, ask, panel = this.panel) {
     const robot = this.selected, draft = this.target.draft, press = (this._press = {});
     const say = (text, refused = false) => {
       if (draft?.wasSent) return;
-      if (this.selected === robot && this.target.draft === draft && this._press === press) this._answer(into, text, refused);
+      if (this.selected === robot && this.target.draft === draft && this._press === press) panel.answer(text, refused);
       else this.banners.showUntilRead(`answer ${robot} ${what}`, `${robot}, ${what}: ${text}`, refused);
     };
-    this._answer(into, "…");
+    panel.answer("…");
     try {
       const result = await ask();
       // It may have been reported before it was answered.
@@ -452,11 +435,6 @@ class Field {
     return this._hold(tr("Pause"), "pause_robot", {}, () => this.resumes === resumed);
   }
 
-  _answer(id, text, refused = false) {
-    by(id).textContent = text;
-    by(id).classList.toggle("refused", refused);
-  }
-
   _resume() {
     const robot = this.selected, holds = this.holds;
     this.resumes++;
@@ -472,7 +450,6 @@ class Field {
 
   _beginTarget(byCoordinates) {
     by("robot").hidden = true;
-    this._answer("target-answer", "");
     this.target.begin(this.selected, byCoordinates);
   }
 
@@ -487,11 +464,11 @@ class Field {
     try {
       order = this.target.order();
     } catch (error) {
-      this._answer("target-answer", error.message, true);
+      this.target.answer(error.message, true);
       return;
     }
     by("send").disabled = true;
-    const sent = await this._do(tr("Send"), () => this._move("send", order), "target-answer");
+    const sent = await this._do(tr("Send"), () => this._move("send", order), this.target);
     if (sent) this._task(sent);
     if (draft === this.target.draft) by("send").disabled = false;
   }
@@ -499,7 +476,7 @@ class Field {
   _wasSent(draft) {
     draft.wasSent = true;
     this._endTarget();
-    this._answer("robot-answer", tr("sent"));
+    this.panel.answer(tr("sent"));
     this._showRobot();
   }
 
@@ -517,7 +494,7 @@ class Field {
     on("send", "click", () => this._send());
     on("cancel", "click", () => (this._endTarget(), this._showRobot()));
     on("whole", "click", () => this.map.showWhole());
-    on("here", "click", () => this._findMe());
+    on("here", "click", () => this.ownPosition.find());
     on("sign-out", "click", () => this._signOut());
     on("language", "change", () => this._chooseLanguage(by("language").value));
     on("updates", "change", () => this._choosePositions());
@@ -567,27 +544,6 @@ class Field {
     this._showRobot();
     this.stop.show();
   }
-
-  _findMe() {
-    if (!window.isSecureContext) {
-      this.banners.show("me", tr("The position of a phone is given to pages with https only."));
-      return;
-    }
-    let first = true;
-    if (this._watching !== undefined) navigator.geolocation.clearWatch(this._watching);
-    this._watching = navigator.geolocation.watchPosition(
-      ({ coords }) => {
-        const place = [coords.latitude, coords.longitude];
-        this.map.showMe(place, coords.accuracy);
-        this.banners.show("me", tr("You are here, within {m} m", { m: Math.round(coords.accuracy) }));
-        if (first) this.map.centreOn(place);
-        first = false;
-      },
-      (error) => this.banners.show("me", tr("This phone does not say where it is: {reason}", { reason: error.message })),
-      { enableHighAccuracy: true },
-    );
-  }
-
 }
 
 function isSame(one, other) {

@@ -1,5 +1,6 @@
 /** The panel in which the target of one robot is made: by a tap on the map, or by coordinates. */
 
+import { showAnswer } from "/field/banners.js";
 import { newId } from "/field/connection.js";
 import { tr } from "/field/texts.js";
 
@@ -29,6 +30,7 @@ export class TargetPanel {
     by("place-form").hidden = !byCoordinates;
     by("cone").checked = false;
     by("target-panel").hidden = false;
+    this.answer("");
     by("target-title").textContent = tr("Target of {robot}", { robot });
     by("target-help").textContent = tr(byCoordinates ? "Enter the coordinates, then send." : "Tap the place on the map.");
     by("send").disabled = !byCoordinates;
@@ -42,6 +44,11 @@ export class TargetPanel {
     by("map").classList.remove("choosing");
     this._map.markTarget(null);
     by("target-panel").hidden = true;
+  }
+
+  /** Show what became of the target that was sent. */
+  answer(text, refused = false) {
+    showAnswer("target-answer", text, refused);
   }
 
   /** Write what the two coordinates are, in the language of the page. */
