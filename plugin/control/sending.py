@@ -37,7 +37,7 @@ class OutgoingCommands(QObject):
     changed = pyqtSignal()
     """A draft was added or removed, or its check progressed."""
     failed = pyqtSignal(object, str)
-    """A draft cannot be checked: the Draft, and why."""
+    """A draft cannot be checked: the PendingCommand, and why."""
 
     def __init__(self, work: Work, parent: QObject | None = None):
         super().__init__(parent)

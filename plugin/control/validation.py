@@ -47,9 +47,9 @@ class ValidationRunner(QObject):
     progressed = pyqtSignal()
     """A check has begun, progressed or ended."""
     overtaken = pyqtSignal(object)
-    """The draft was changed before the action on it: the Draft as it was."""
+    """The draft was changed before the action on it: the PendingCommand as it was."""
     displaced = pyqtSignal(object, object)
-    """Another draft was begun before the action on this one: the Draft, and the action."""
+    """Another draft was begun before the action on this one: the PendingCommand, and the action."""
     found = pyqtSignal(object)
     """The draft that was put on the map has been checked: the PendingCommand, with its findings."""
 

@@ -231,7 +231,7 @@ class GatewayClient:
             self._awake_at = steady_time()
 
     def _check_awake(self) -> None:
-        """Raise LinkError when this computer has slept: messages received now are old."""
+        """Raise GatewayLinkError when this computer has slept: messages received now are old."""
         asleep = steady_time() - self._awake_at
         if asleep > ASLEEP_AFTER:
             raise GatewayLinkError(

@@ -346,7 +346,7 @@ class GatewayProtocol:
         self._buffer.add(gateways=FleetGateways(self._database, others))
 
     def _check_fleet(self, database: str) -> None:
-        """Raise LinkError for a gateway that another one reported, and that now serves another fleet.
+        """Raise GatewayLinkError for a gateway that another one reported, and that now serves another fleet.
 
         The one that the operator gave may have another database than before: that is shown instead.
         """

@@ -46,7 +46,7 @@ def site_crs_for(
 
 
 def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
-    """Raise :class:`SiteCrsError` unless ``crs`` is a plane in true metres (design, section 4).
+    """Raise :class:`SiteCrsError` unless ``crs`` is a plane in true metres.
 
     Projected CRSs in metres qualify, except Mercator ones such as EPSG:3857; so does an engineering CRS in
     metres, which is a site frame already.

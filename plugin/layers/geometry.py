@@ -406,7 +406,7 @@ def normal_extra(points: np.ndarray, z: np.ndarray, notes: list[str]) -> dict[st
 # --- From one QGIS geometry to the rings, lines and risers of a robot map ---
 
 SAGITTA_M = 0.02
-"""Greatest distance in metres of a chord from its curve (design, section 6)."""
+"""Greatest distance in metres of a chord from its curve."""
 
 NO_PLACE = tr(
     "has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; "

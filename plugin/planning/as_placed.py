@@ -114,7 +114,7 @@ class AsPlacedReportError(FleetError):
 def open_report_dialog(project: QgsProject) -> None:
     """Open the dialog of ``fleet:asplacedreport`` on the layer of placed cones, which is in ``project``.
 
-    :raises ReportError: when QGIS's Processing is switched off.
+    :raises AsPlacedReportError: when QGIS's Processing is switched off.
     """
     try:
         from processing import createAlgorithmDialog

@@ -188,7 +188,7 @@ class PlanTree(QTreeWidget):
 def position_beside(plan: ConePlan, target: str, onto: str, *, after: bool) -> tuple[str, int, int] | None:
     """Return robot, trip and place of ``target`` when it is dropped before or ``after`` cone ``onto``.
 
-    Trip and place are as in :func:`~.editing.moved`. None when ``onto`` is no robot's.
+    Trip and place are as in :func:`.plan_changes.move_target`. None when ``onto`` is no robot's.
     """
     names = [one.robot.id for one in plan.robots if not one.lost]
     for robot, day in zip(names, trips_of(plan), strict=True):

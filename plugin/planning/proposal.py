@@ -44,9 +44,7 @@ from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, SignallingTask, Steps, run_to_end
 from .plan_settings import PlanSettings
 
-# --- Paths: straight or by road, around standing cones and robots ---
-
-# --- The robots' ways from place to place: straight nearby, along the roads farther off ---
+# --- The robots' paths from place to place: straight nearby, by road farther off, around cones and robots ---
 
 
 class PlanTravel:
@@ -78,8 +76,8 @@ class PlanTravel:
     def travel_of(self, job: AssignmentJob, goes_on: Callable[[], bool]) -> Travel:
         """Return the ways between the places of ``job``, clear of its cones and of standing cones and robots.
 
-        :raises CancelledError: here and by the ways once ``goes_on()`` is false; RoadsError when a place is
-            too far from every road; LayerReadingError for a layer of roads that cannot be read.
+        :raises AssignmentCancelledError: here and by the ways once ``goes_on()`` is false; RoadsError when a
+            place is too far from every road; LayerReadingError for a layer of roads that cannot be read.
         """
         router = self._opened(goes_on)
         travel: Travel = StraightTravel(job)
@@ -148,8 +146,6 @@ class _Asking(QgsFeedback):
 
 
 # --- The proposal, its checks, and the task that computes it ---
-
-# --- The ways of a plan that lead along roads closed at the gateway ---
 
 
 def closed_in_words(way: ClosedWay) -> str:

@@ -480,7 +480,7 @@ class RobotMemory:
         except (ValueError, TypeError, KeyError) as error:
             raise BridgeError(
                 f"memory {self._file} is none of a robot ({error}); name another file, or delete it if the "
-                "robot may be told once more what it has done"
+                "robot may be sent again what it has done"
             ) from None
 
     def keep(self, remembered: RememberedRun) -> None:

@@ -57,7 +57,7 @@ class RobotWebSocketLink:
         self._standstill = StandstillWatch(longest_pause_s)
         self._connected = False
         self._ids = itertools.count(1)
-        self._untold: list[Observed] = []
+        self._unsent: list[Observed] = []
         self._pending_requests: dict[int, Request] = {}
 
     @property
@@ -68,17 +68,17 @@ class RobotWebSocketLink:
     @property
     def unacknowledged_observations(self) -> int:
         """The number of observations that the gateway has not acknowledged yet."""
-        return len(self._untold)
+        return len(self._unsent)
 
     def say(self, request: Request) -> None:
         """Send a request, if connected."""
         if isinstance(request, Observed):
-            self._untold.append(request)
+            self._unsent.append(request)
         if not self._connected:
             return
         self._outgoing.put_nowait(request)
         if isinstance(request, Ready):
-            for observed in self._untold:
+            for observed in self._unsent:
                 self._outgoing.put_nowait(observed)
 
     async def run(self, agent: Agent) -> None:
@@ -189,8 +189,8 @@ class RobotWebSocketLink:
         if isinstance(request, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
             # Observations that could not be stored are sent again; invalid ones are not.
             asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, request)
-        elif isinstance(request, Observed) and request in self._untold:
-            self._untold.remove(request)
+        elif isinstance(request, Observed) and request in self._unsent:
+            self._unsent.remove(request)
         if not ack.ok:
             log.error("the gateway refused %s: %s", type(request).__name__, ack.reason)
         agent.receive(ack, None)

@@ -79,7 +79,7 @@ ID, VIEWS = "ID", "SCHEMA"
 
 
 class PublishSite(FleetAlgorithm):
-    """Publishes the project's layers as the site that a gateway serves (design, section 3)."""
+    """Publishes the project's layers as the site that a gateway serves."""
 
     GROUP = ("sites", tr("Sites"))
     NAME = "publishsite"

@@ -17,8 +17,7 @@ from .job import COLLECT, PLACE, ConeTarget, PlanRobot, Store
 # --- The plan: stops of each robot, with places, times and paths ---
 
 STORE, HOME = "store", "home"
-STOP_KINDS = (PLACE, COLLECT, STORE, HOME)
-"""Kinds of stops: place a cone, collect one, load and unload at a store, or end at the start."""
+"""Kinds of stops beside :data:`PLACE` and :data:`COLLECT`: load and unload at a store, end at the start."""
 
 Path = tuple[tuple[float, float], ...]
 

@@ -16,9 +16,6 @@ from ..errors import ShapingError
 
 # --- Round things as chords, and the normals of ramps ---
 
-SAGITTA = 0.02
-"""metres; how far a chord may be from its curve (design, section 6)."""
-
 
 def ramp_normal(points: NDArray[Any]) -> str:
     """Return the upward unit normal of a ramp's surface for the extra ``n``, such as ``0,-0.0995,0.995``.

@@ -81,7 +81,7 @@ class SiteBounds(NamedTuple):
 
 @dataclass(frozen=True)
 class SiteFrame:
-    """A projected CRS, an origin in it and a rotation (design, section 4).
+    """A projected CRS, an origin in it and a rotation.
 
     ``origin`` is the site's (0, 0) in CRS metres; ``rotation`` is in radians, counter-clockwise from the
     CRS's x axis to the site's x axis. The axes are scaled 1:1, so a length is the same in both.
@@ -125,7 +125,7 @@ class SiteFrame:
 def check_site_crs(crs: str) -> None:
     """Raise :class:`CrsError` unless ``crs`` is a projected CRS in true metres, x east and y north.
 
-    EPSG:3857 is refused: its metres are stretched by 1/cos(latitude) (design, section 4).
+    EPSG:3857 is refused: its metres are stretched by 1/cos(latitude).
     """
     known = crs_of(crs)
     if known.is_geographic or not known.is_projected:

@@ -119,7 +119,7 @@ def _number(default: Any, *, least: float = 0.0, above: bool = False, most: floa
 
 @dataclass(frozen=True)
 class LivenessLimits:
-    """Seconds without a message after which a robot counts as stale and as lost (design, section 4)."""
+    """Seconds without a message after which a robot counts as stale and as lost."""
 
     stale_after_s: float = _number(3.0, above=True)
     lost_after_s: float = _number(10.0, above=True)

@@ -210,7 +210,7 @@ def whole_head(settings: SiteSettings) -> str:
 
 
 def map_meta(settings: SiteSettings, border: Border) -> dict[str, str]:
-    """Return the leading lines of the map of ``border`` of a site (design, section 6).
+    """Return the leading lines of the map of ``border`` of a site.
 
     A map that leaves out part of the site states the rectangle of the whole site.
     """

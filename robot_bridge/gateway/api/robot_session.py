@@ -91,7 +91,7 @@ class RobotSession:
         self._closing: asyncio.Task[None] | None = None
         self._due = BackgroundTasks()
         self._has_ended = False
-        self._told_gateways: list[str] | None = None
+        self._sent_gateways: list[str] | None = None
 
     # --- called by its connection -----------------------------------------------------------------
 
@@ -231,9 +231,9 @@ class RobotSession:
     def _acknowledgement(self, outcome: RequestOutcome) -> OpAck:
         """Return the OpAck of a call, with the gateways of the fleet if changed since last sent."""
         ack, gateways = outcome.ack or OpAck(), self._fleet.gateway_urls(self._channel.endpoint)
-        if gateways == self._told_gateways and not outcome.admitted:
+        if gateways == self._sent_gateways and not outcome.admitted:
             return ack
-        self._told_gateways = gateways
+        self._sent_gateways = gateways
         return replace(ack, gateways=gateways)
 
     async def _ask(self, request: Request, id: int | None) -> RequestOutcome:

@@ -61,7 +61,7 @@ class ClusterSettings:
         address = self.public_address
         if address is not None and not (is_gateway_address(address) and len(address) <= LONGEST_PUBLIC):
             raise BridgeError(
-                f"public address {address!r:.80} cannot be told to robots; write it as ws://HOST:PORT or "
+                f"public address {address!r:.80} cannot be sent to robots; write it as ws://HOST:PORT or "
                 f"wss://HOST:PORT, with a path if robots need one, at most {LONGEST_PUBLIC} characters"
             )
 

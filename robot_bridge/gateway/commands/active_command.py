@@ -349,7 +349,7 @@ def restart_commands(
     """
     ended = [end for command in mine for end in ended_by(command, mine, now, "the robot started anew")]
     ended += [
-        command.step(CommandState.EXPIRED, now, GATEWAY, "the robot started anew, and it was too old then")
+        command.step(CommandState.EXPIRED, now, GATEWAY, "the robot restarted when the command had expired")
         for command in mine
         if command.is_on_its_way and command.expired(now, expire_after)
     ]
@@ -368,7 +368,7 @@ def _to_be_sent_again(
 ) -> ActiveCommand:
     """Return a command to be sent again; one never fetched keeps its place after the others."""
     if command.report.state is CommandState.QUEUED:
-        reason = "behind what the robot is told once more"
+        reason = "sent after what is sent to the robot again"
     noted, handed = command.noted(now, GATEWAY, reason), seen(command.report.robot)
     return dataclasses.replace(noted, written_at=now, handed=handed, out_of_sight=False)
 

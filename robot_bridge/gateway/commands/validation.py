@@ -321,4 +321,4 @@ class CommandValidator(CommandReader):
 
 
 def _ordered_otherwise(robot: str) -> RefusedError:
-    return RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+    return RefusedError(f"robot {robot!r} has another command by now")

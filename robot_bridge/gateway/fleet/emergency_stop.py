@@ -372,7 +372,7 @@ class EmergencyStops:
         self._seen.add(stop.id)
         self._stop = self._in_force[stop.id] = stop
         self._unstored.append(stop)
-        with log_and_continue(log, "counting who is told of an emergency stop"):
+        with log_and_continue(log, "counting the robots that are sent an emergency stop"):
             self._count_again()
 
     def _count_again(self) -> None:

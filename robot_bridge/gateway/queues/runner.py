@@ -323,7 +323,7 @@ class QueueRunner:
             queue = self._registry.get(robot)
             current = self._current(robot)
             if current is None:
-                raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+                raise RefusedError(f"robot {robot!r} has another command by now")
             check_path(current.id, rest, (current.task.x, current.task.y))
             label = f"waits for {other}"
             after = task_life.split_at_stop(queue, first, rest, label, by, self._clock.time())

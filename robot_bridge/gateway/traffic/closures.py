@@ -187,7 +187,7 @@ class Detours:
 
     async def _without_way(self, way: RobotPath, why: str, operator: str) -> messages.ReplannedRobot:
         if self._site.settings.routes.no_way != "stop":
-            text = f"{way.robot} drives on as it was told, though {why}. Look after it."
+            text = f"{way.robot} keeps to its way, though {why}. Look after it."
             return messages.ReplannedRobot(way.robot, "told only", text)
         command = await self.stop(way.robot, f"no other way: {why}"[:500], operator)
         return messages.ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)

@@ -336,7 +336,7 @@ class YieldManager:
         # The command to its place of waiting may be written again.
         if ends and row is not None and row.command != report.command:
             del self._rows[report.robot]
-            log.warning("robot %s was told %s, and waits no longer", report.robot, report.op)
+            log.warning("robot %s was sent %s, and waits no longer", report.robot, report.op)
 
     def check(self, robot: str) -> None:
         """Raise RefusedError for a robot that requests its path while it must wait."""
@@ -365,7 +365,7 @@ class YieldManager:
     async def _send_on(self, row: HoldRow, seen: TrafficSnapshot) -> None:
         task = self._commands.busy_with(row.robot)
         if not self._still_waits(row, task, seen):
-            log.warning("robot %s has been told otherwise, or gave up; it waits no longer", row.robot)
+            log.warning("robot %s has another command by now, or gave up; it waits no longer", row.robot)
             await self._forget(row.robot)
             return
         if seen.now < row.until:

@@ -413,7 +413,7 @@ class LinkClient:
             self._record_refusal(robot.name, None)
             self._adapter.admitted(robot.name)
             self._connection.write_soon()
-            for kept in robot.untold():
+            for kept in robot.unsent():
                 self._send(robot, kept)
             return
         reason = reply.error or str(ack.get("reason"))

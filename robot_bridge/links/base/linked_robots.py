@@ -99,7 +99,7 @@ class LinkedRobot:
                 older.answer.cancel()
         self.kept.append(kept)
 
-    def untold(self) -> Iterator[Kept]:
+    def unsent(self) -> Iterator[Kept]:
         """Yield the requests not sent yet on this connection."""
         return (kept for kept in list(self.kept) if kept.call is None)
 

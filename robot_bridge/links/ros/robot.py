@@ -446,7 +446,7 @@ class RosRobot(Generic[Network]):
                 try:
                     self._send(effect)
                 except ValueError as error:
-                    log.error("robot %s was not told: %s", self.name, error)
+                    log.error("robot %s was not sent a message: %s", self.name, error)
 
     def _send(self, effect: Effect) -> None:
         """Send an effect to the robot; raises ValueError for places that cannot be converted to its frame."""

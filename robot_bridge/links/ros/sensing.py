@@ -151,7 +151,7 @@ def clock_remark(t: float | None, now: float) -> str | None:
         return None
     way = "behind" if t < now else "ahead"
     simulated = ", which may be simulated time" if t < 1e9 else ""
-    return f"its clock is {abs(now - t):.0f} s {way}{simulated}: its time stamps are told as they come"
+    return f"its clock is {abs(now - t):.0f} s {way}{simulated}: its time stamps are passed on as they come"
 
 
 def _pose(

@@ -58,7 +58,7 @@ class Vehicle:
         self.writer = MessageWriter(controller.vehicle)
         self.received_at = now
         self.is_introduced = False
-        self.untold: list[Settled] = []
+        self.unsent: list[Settled] = []
         """Outcomes of commands before the gateway knew the vehicle: orders that ended without a running
         link."""
         self._commands: dict[int, asyncio.Future[str | None]] = {}
@@ -318,9 +318,9 @@ class Vda5050Adapter(Adapter):
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
         link.add(vehicle.robot, abilities)
-        for settled in vehicle.untold:
+        for settled in vehicle.unsent:
             self._report_effect(vehicle, settled)
-        vehicle.untold.clear()
+        vehicle.unsent.clear()
 
     # --- effects --------------------------------------------------------------------------------------
 
@@ -364,7 +364,7 @@ class Vda5050Adapter(Adapter):
             if vehicle.is_introduced:
                 link.give_up(vehicle.robot, effect.command_id, effect.reason)
             else:
-                vehicle.untold.append(effect)
+                vehicle.unsent.append(effect)
         elif isinstance(effect, Halted):
             vehicle.halted()
         elif isinstance(effect, VehicleReport) and link is not None and vehicle.is_introduced:

@@ -257,7 +257,7 @@ class Memory:
             raise Vda5050Error(f"memory {file} cannot be read: {error.strerror or error}") from None
         except (DecodingError, msgspec.ValidationError) as error:
             raise Vda5050Error(
-                f"memory {file} is none of a vehicle ({error}); delete it if the vehicle may be told once "
+                f"memory {file} is none of a vehicle ({error}); delete it if the vehicle may be sent once "
                 "more what it has done"
             ) from None
 

@@ -168,7 +168,7 @@ class WebSocketRobot(Robot):
         super().__init__(*how, **more)
         self._connected = False
         self._last = {False: 0, True: 0}
-        self._untold: list[SetObject] = []
+        self._unsent: list[SetObject] = []
         self._call = 0
 
     def lose_link(self):
@@ -176,7 +176,7 @@ class WebSocketRobot(Robot):
 
     def see(self, told):
         """Have the gateway told of an object, until it says that it has stored it."""
-        self._untold.append(told)
+        self._unsent.append(told)
 
     def stop_now(self, call_id):
         """Take the direct call of an emergency stop."""
@@ -196,10 +196,10 @@ class WebSocketRobot(Robot):
             return
         if not self._connected and not await self._connect():
             return
-        while self._untold:
-            outcome = await fleet.receive(self.name, self.link, self._untold[0], self._next_call())
+        while self._unsent:
+            outcome = await fleet.receive(self.name, self.link, self._unsent[0], self._next_call())
             assert outcome.ack.ok
-            self._untold.pop(0)
+            self._unsent.pop(0)
         if not self.says_late:
             await self._say_where_it_is()
         for row in await fleet.outboxes.outbox(self.name, self._last[False], self._last[True]):
@@ -306,6 +306,6 @@ class SqlRobot(Robot):
     def acknowledged(self):
         del self._unsaid[:1]
 
-    def untold(self, after=0.0):
+    def unsent(self, after=0.0):
         if self._unsaid:
             self._unsaid[0].say_at = self.play.now + after

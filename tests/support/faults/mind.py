@@ -133,7 +133,7 @@ class Mind:
             self.note("accepted", object=self._telling.params["object"], image=digest)
             self._telling = None
 
-    def untold(self, after: float = 0.0) -> None:
+    def unsent(self, after: float = 0.0) -> None:
         """Tell the last observation again: it is not known whether it was taken."""
         if self._telling is not None:
             self._telling.say_at = time.time() + after

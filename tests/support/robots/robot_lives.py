@@ -62,7 +62,7 @@ class MindOverWebSocket:
     def _live(self, wire: RobotWire, ended: threading.Event) -> None:
         self._ready = False
         self._calls.clear()
-        self._mind.untold()
+        self._mind.unsent()
         ready_at = float("inf")
         while not ended.is_set():
             frame = wire.receive(LOOK_EVERY)
@@ -96,7 +96,7 @@ class MindOverWebSocket:
             self._mind.acknowledged()
         else:
             self._mind.note("refused", op=op, text=str(frame.get("error", frame.get("result"))))
-            self._mind.untold(AGAIN_AFTER)
+            self._mind.unsent(AGAIN_AFTER)
         return True
 
     def _tell(self, wire: RobotWire) -> None:
@@ -199,7 +199,7 @@ class MindOverSql:
             return False
         self._ready = params["ok"]
         self._ready_at = float("inf") if self._ready else self._clock() + SAY_READY_AGAIN_AFTER
-        self._mind.untold()
+        self._mind.unsent()
         return True
 
     def _hear_ack(self, params: dict[str, Any]) -> None:
@@ -207,7 +207,7 @@ class MindOverSql:
             self._mind.acknowledged()
         else:
             self._mind.note("refused", text=params.get("reason"))
-            self._mind.untold(AGAIN_AFTER)
+            self._mind.unsent(AGAIN_AFTER)
 
     def _write(self, read: list[int], acknowledged: list[int]) -> None:
         """Delete what was read and write what there is to say, in one transaction."""

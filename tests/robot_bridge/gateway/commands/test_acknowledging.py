@@ -106,9 +106,9 @@ def test_what_it_had_and_what_waits_behind_that_is_sent_once_more_and_not_judged
     again, ended = anew(mine)
     assert ended == []
     assert [(one.report.command, *last(one)) for one in again] == [
-        ("c-1", "queued", 200.0, "gateway", "behind what the robot is told once more"),
+        ("c-1", "queued", 200.0, "gateway", "sent after what is sent to the robot again"),
         ("c-2", "acknowledged", 200.0, "gateway", REASON),
-        ("c-3", "queued", 200.0, "gateway", "behind what the robot is told once more"),
+        ("c-3", "queued", 200.0, "gateway", "sent after what is sent to the robot again"),
     ]
     for one in again:
         assert (one.written_at, one.handed, one.out_of_sight, one.arrival) == (
@@ -138,7 +138,7 @@ def test_what_is_too_old_is_given_up_unless_the_robot_had_taken_it_on():
     again, ended = anew(mine[:1] + mine[1:3], now=100.0 + AFTER)
     assert [one.report.command for one in again] == ["c-1"]
     assert [(one.report.command, *last(one)) for one in ended] == [
-        (id, "expired", 400.0, "gateway", "the robot started anew, and it was too old then")
+        (id, "expired", 400.0, "gateway", "the robot restarted when the command had expired")
         for id in ("c-3", "c-2")
     ]
     again, _ = anew(mine[1:2] + mine[3:], now=100.0 + AFTER)

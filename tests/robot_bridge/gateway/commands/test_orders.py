@@ -131,7 +131,7 @@ def instead(id, task, message=None, robot="r1"):
     return CommandOrder(id, robot, message or SetPosEnd(50.0, 40.0), "Ada", instead_of=task)
 
 
-OTHERWISE = "robot 'r1' has been told otherwise in the meantime"
+OTHERWISE = "robot 'r1' has another command by now"
 
 
 @pytest.mark.parametrize(

@@ -176,7 +176,7 @@ async def test_a_robot_that_is_to_stop_is_led_nowhere_when_its_road_is_closed(ro
     await roads.drive("one", [(10.0, 8.0), (126.0, 8.0)])
     await roads.fleet.orders.abort(AbortTask("command-abort", "r1"), "Ada")
     (robot,) = (await roads.close_road(*SOUTH)).robots
-    assert (robot.became, "told otherwise in the meantime" in robot.text) == ("failed", True)
+    assert (robot.became, "has another command by now" in robot.text) == ("failed", True)
     assert await roads.acknowledge_all() == ["Abort"]
 
 
