@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import socket as system_sockets
 import threading
 from types import ModuleType
 from typing import Any
@@ -30,6 +32,11 @@ ASLEEP_AFTER = 8.0
 """Seconds: messages that waited in this computer for longer would be taken for new."""
 STOP_TRIES_EVERY = 0.5
 """Seconds between two attempts to connect at most, while a stop waits to be sent."""
+PIECE = 16_384
+"""Characters of a message that are sent at a time, and about as many bytes wait unsent in this computer: on a
+slow line the pings between the pieces, and a stop behind the message, come soon."""
+STOP_PATIENCE = 0.5
+"""Seconds that a stop waits for the rest of a large message on a slow line."""
 
 
 class GatewayClient:
@@ -59,6 +66,8 @@ class GatewayClient:
         self._refusals: dict[str, GatewayLinkError] = {}
         self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
+        self._submitted = self._written = 0
+        """The numbers of messages to send on this link, and of those that were written."""
         self._stop_asked = asyncio.Event()
 
     @property
@@ -75,6 +84,8 @@ class GatewayClient:
                 if failure.final and self._has_refused(failure):
                     return
                 reason = self._because(failure)
+                if failure.at_once:
+                    continue
                 await self._wait_to_try(reason, self._addresses.next_wait(ends=failure.ends))
         finally:
             self._protocol.end()
@@ -153,6 +164,7 @@ class GatewayClient:
             "close_timeout": CLOSE_WITHIN,
             "max_size": LARGEST_MESSAGE,
             "max_queue": MOST_WAITING,
+            "write_limit": PIECE,
             "compression": None,
             **self._credentials.options(self._url),
         }
@@ -164,13 +176,17 @@ class GatewayClient:
 
     async def _converse(self, socket: Any) -> None:
         self._outgoing = asyncio.Queue()
+        self._submitted = self._written = 0
+        self._stop_asked = asyncio.Event()
+        _hold_little(socket)
         self._send_all(self._protocol.begin())
         self._awake_at = steady_time()
-        work = (self._read(socket), self._write(socket), self._stay_awake())
+        work = (self._cut_for_stops(socket), self._read(socket), self._write(socket), self._stay_awake())
         tasks = [asyncio.ensure_future(one) for one in work]
         try:
-            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            # In this order: where the link was cut, reading it fails as well.
+            for task in filter(asyncio.Future.done, tasks):
                 task.result()
         finally:
             for task in tasks:
@@ -244,11 +260,50 @@ class GatewayClient:
 
     async def _write(self, socket: Any) -> None:
         while True:
-            await socket.send(await self._outgoing.get())
+            text = await self._outgoing.get()
+            if len(text) > PIECE:
+                await socket.send(text[at : at + PIECE] for at in range(0, len(text), PIECE))
+            else:
+                await socket.send(text)
+            self._written += 1
+
+    async def _cut_for_stops(self, socket: Any) -> None:
+        """Cut the link when a stop waits for the rest of a large message: on the next one it is sent first.
+
+        Nothing but pings can be sent between the pieces of a message. The gateway does nothing of a part.
+        """
+        while True:
+            await self._stop_asked.wait()
+            self._stop_asked.clear()
+            before_it = self._submitted - 1
+            while self._written < before_it:
+                await asyncio.sleep(STOP_PATIENCE)
+                # Where all is on its way, the line is fast, and this process slow.
+                if self._written < before_it and socket.transport.get_write_buffer_size():
+                    socket.transport.abort()
+                    raise GatewayLinkError(
+                        tr(
+                            "A stop would wait for the rest of a large request on the slow line to {url}: "
+                            "the link is opened again, and the stop sent first.",
+                            url=self._url,
+                        ),
+                        at_once=True,
+                    )
 
     def _send_all(self, texts: list[str]) -> None:
         for text in texts:
             self._outgoing.put_nowait(text)
+        self._submitted += len(texts)
+
+
+def _hold_little(socket: Any) -> None:
+    """Have the system hold little that is not on its way yet: a stop is sent behind it."""
+    own = socket.transport.get_extra_info("socket")
+    with contextlib.suppress(OSError):
+        if hasattr(system_sockets, "TCP_NOTSENT_LOWAT"):
+            own.setsockopt(system_sockets.IPPROTO_TCP, system_sockets.TCP_NOTSENT_LOWAT, PIECE)
+        else:
+            own.setsockopt(system_sockets.SOL_SOCKET, system_sockets.SO_SNDBUF, 4 * PIECE)
 
 
 STOP_WITHIN_MS = 3000

@@ -53,7 +53,7 @@ class GatewayLinkError(FleetError):
 
     ``final`` is true when another attempt cannot help before something is changed; ``wants_token`` when
     that is the token or the CA file; ``everywhere`` when it applies to all gateways of the fleet. ``ends``:
-    the gateway announced its shutdown.
+    the gateway announced its shutdown. ``at_once``: the desk ended the link, to open it again without a wait.
     """
 
     def __init__(
@@ -64,12 +64,14 @@ class GatewayLinkError(FleetError):
         wants_token: bool = False,
         everywhere: bool = False,
         ends: bool = False,
+        at_once: bool = False,
     ):
         super().__init__(message)
         self.final = final
         self.wants_token = wants_token
         self.everywhere = everywhere
         self.ends = ends
+        self.at_once = at_once
 
 
 class NotSentError(FleetError):

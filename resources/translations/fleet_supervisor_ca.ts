@@ -1704,6 +1704,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
+            <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
+            <translation>Una aturada hauria d'esperar la resta d'una petició gran en la línia lenta cap a {url}: la connexió es torna a obrir, i l'aturada s'envia primer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La connexió s'ha aturat per un error intern ({name}: {error}). Premeu Connecta per tornar-ho a provar i comuniqueu aquest text.</translation>
         </message>

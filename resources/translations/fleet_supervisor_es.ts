@@ -1704,6 +1704,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
+            <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
+            <translation>Una parada tendría que esperar al resto de una petición grande en la línea lenta hacia {url}: la conexión se abre de nuevo, y la parada se envía primero.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La conexión se detuvo por un error interno ({name}: {error}). Pulse Conectar para volver a intentarlo y comunique este texto.</translation>
         </message>

@@ -1696,6 +1696,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
+            <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
+            <translation>Egy megállításnak meg kellene várnia egy nagy kérés maradékát a lassú vonalon ide: {url}. A kapcsolat újra megnyílik, és a megállítás megy el először.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>A kapcsolat belső hiba miatt leállt ({name}: {error}). Nyomja meg a Kapcsolódás gombot az újrapróbáláshoz, és jelentse ezt a szöveget.</translation>
         </message>

@@ -33,11 +33,11 @@ class Loop:
         self.address = ""
         self._runs = 0
 
-    def start_gateway(self, port=0):
+    def start_gateway(self, port=0, *more):
         self._runs += 1
-        options = ["--site", self._site, "--port", str(port), "--database", self._database]
+        options = ["--site", self._site, "--port", str(port), "--database", self._database, *more]
         self.gateway = self._processes.start_bridge(f"gateway-{self._runs}", ["serve", *options])
-        found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
+        found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (wss?://\S+:(\d+))", 30)
         self.address, self.port = found.group(1), int(found.group(2))
 
     def start_on_empty_database(self):
@@ -75,9 +75,9 @@ def start_loop(tmp_path, empty_database):
     shutil.copy(empty_database, tmp_path / "fleet.db")
     with Processes(tmp_path / "logs") as processes:
 
-        def start(site):
+        def start(site, *options):
             loop = Loop(processes, site, tmp_path)
-            loop.start_gateway()
+            loop.start_gateway(0, *options)
             return loop
 
         yield start

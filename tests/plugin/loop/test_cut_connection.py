@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+import dataclasses
 from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.control.pending_command import ApproachKind
-from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client import connection
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, OperatorCredentials
+from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
+from fleet_supervisor.robot_bridge.core.clock import steady_time
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
+from robot_bridge.gateway.auth import certificates
 from tests.support.bridge.cut_line import CutLine
 from tests.support.operators import ask
 
 SLOW = 60, 0.1
 """Bytes that reach the gateway at a time, and seconds between them."""
+SLOW_FOR_MUCH = 8_192, 0.04
+TASKS, POINTS = 250, 150
+"""of a queue of 0.5 MB, which takes longer on that line than a ping may take."""
+HASTY = dataclasses.replace(connection.DESK_PACE, ping_interval=0.2)
 
 
 @pytest.fixture
@@ -101,3 +110,44 @@ def test_a_stop_on_a_link_that_was_given_up_for_another_is_told(desk, line, plug
     desk.wait("the link", lambda: desk.desk.state.link.phase is ConnectionPhase.CONNECTED, 20)
     desk.wait("what became of the stop", lambda: not desk.desk.orders.awaits_stop, 10)
     assert any("EMERGENCY STOP: The link was closed before" in text for text in iface.texts())
+
+
+def test_an_abort_goes_before_the_rest_of_a_large_request_that_is_then_done_once(
+    start_loop, root, tmp_path, wait, qgis_app, monkeypatch
+):
+    """Over TLS, where the most waits: the library of Python takes all that it is handed."""
+    monkeypatch.setattr(connection, "DESK_PACE", HASTY)
+    tls = certificates.create(tmp_path / "tls", [], ["127.0.0.1"])
+    site = root / "resources" / "sample_site"
+    loop = start_loop(site, "--certificate", tls.certificate, "--key", tls.key)
+    loop.start_robot("r1", (20, 8, 0), sql=True)
+    loop.start_robot("r2", (40, 8, 0), sql=True)
+    line, desk = CutLine(loop.port), connection.ConnectionThread()
+    robots, links, answers = set(), [], {}
+
+    def news():
+        update = desk.collect_updates()
+        robots.update(update.robots.names)
+        links.extend([] if update.link.phase in links[-1:] else [update.link.phase])
+        answers.update({one.order.key: one for one in update.answers})
+        return links
+
+    path = [[30.0 + 0.5 * k, 8.0] for k in range(POINTS)]
+    tasks = [{"task": f"task-{k:04d}", "x": path[-1][0], "y": 8.0, "path": path} for k in range(TASKS)]
+    large = {"robot": "r2", "revision": 0, "tasks": tasks}
+    desk.open(f"wss://127.0.0.1:{line.port}/desk", "anna", OperatorCredentials("", str(tls.ca)))
+    try:
+        wait(lambda: news() and len(robots) == 2, 20)
+        line.slow_down(*SLOW_FOR_MUCH)
+        desk.submit(OperatorRequest("large", "add_tasks", large, steady_time()))
+        abort = {"robot": "r1", "command": "abort-r1"}
+        desk.submit(OperatorRequest("stop", "abort", abort, steady_time()))
+        wait(lambda: news() and "stop" in answers, 20)
+        assert "large" not in answers and links.count(ConnectionPhase.CONNECTED) == 2, "it waited"
+        wait(lambda: news() and "large" in answers, 40)
+    finally:
+        desk.shut_down()
+        line.close()
+    assert answers["stop"].error is None
+    assert answers["large"].error is None and len(answers["large"].result["tasks"]) == TASKS
+    assert links.count(ConnectionPhase.CONNECTED) == 2, "pings waited for the rest of the large request"

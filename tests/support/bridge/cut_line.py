@@ -17,6 +17,7 @@ from typing import Any
 from tests.support.bridge.bridge_programs import wait_until
 
 ALL_AT_ONCE = 65_536, 0.0
+HELD_BYTES = 8_192
 CUT = 10.0
 """seconds for which a line is cut; a robot of an impatient site is lost after 1.6 s."""
 
@@ -31,7 +32,10 @@ class CutLine:
         self._is_whole, self._is_whole_back = threading.Event(), threading.Event()
         self.mend()
         self._server = socket.create_server(("127.0.0.1", 0))
-        self.address = f"ws://127.0.0.1:{self._server.getsockname()[1]}"
+        # Else a slow line would hold more than a second of what it is sent.
+        self._server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, HELD_BYTES)
+        self.port = self._server.getsockname()[1]
+        self.address = f"ws://127.0.0.1:{self.port}"
         threading.Thread(target=self._accept, daemon=True).start()
 
     def cut(self, *, only_back: bool = False) -> None:
