@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
+import random
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence, Set
 from typing import Any, NamedTuple
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from ...core.clock import Clock
-from ...core.errors import DataRefusedError
+from ...core.errors import DataRefusedError, StoreError
 from ...core.logs import TroubleNews
 from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
 from ...core.messages.robots import SendPos
@@ -158,19 +159,33 @@ class TrajectoryRecorder:
 
 # --- Storage of robots' tracks and current poses, in an order that loses nothing
 
+TRIED = 5
+"""robots of which a position is tried before a table counts as one that refuses all: others each time, so
+that some whose rows an administrator refuses do not keep those of the others back for long."""
+
+
+class TableRefusesError(StoreError):
+    """The database works, and a table takes nothing of any robot, as with a trigger that refuses each row."""
+
+    def __init__(self, error: DataRefusedError, what: str, table: str) -> None:
+        super().__init__(
+            f"{error}; so it is with every robot: {what}. See what triggers and rules table {table} has"
+        )
+
 
 class WrittenRobots(NamedTuple):
-    """Outcome of storing robots: those removed by others, and those refused by the database."""
+    """Outcome of storing robots: those removed by others, and those refused by the database, and why."""
 
     removed: set[str]
     refused: set[str]
+    reason: DataRefusedError | None = None
 
 
 class TrajectoryWriter:
     """Stores positions, and then robots' current poses.
 
     In this order: a stored pose makes older ones late, and a request processed again carries one. So current
-    poses are written only when no position waits or is being written.
+    poses are written only when no position waits or is being written, or when none is taken at all.
     """
 
     def __init__(
@@ -193,6 +208,8 @@ class TrajectoryWriter:
         self._jotted: list[tuple[int, list[PackedFix]]] = []
         """positions that a server may still lose, with the session in which they were written."""
         self._news = TroubleNews()
+        self._refusal: TableRefusesError | None = None
+        """why no position was taken, until some are."""
         self._writing = asyncio.Lock()
         self._begun = self._done = 0
         """counts of writes of robots: the number of the last begun one, and of the last one that
@@ -224,7 +241,8 @@ class TrajectoryWriter:
     async def save(self, *robots: str) -> None:
         """Store tracks and current poses, those of ``robots`` in any case; raises StoreError.
 
-        Several callers that wait meanwhile are served by one write.
+        Several callers that wait meanwhile are served by one write. A table that takes nothing of any robot
+        is an error for the caller who names none: robots are registered all the same.
         """
         self._unsaved.update(robots)
         await to_its_end(self._save(self._begun if robots else None))
@@ -241,12 +259,15 @@ class TrajectoryWriter:
     ) -> None:
         write = self._database.run if lasting else self._database.write_relaxed
         async with self._writing:
-            fixes, session = self._recorder.next_batch(self._clock.time()), self._database.session
+            fixes, session = self._next_batch(), self._database.session
             try:
                 await write(work, *arguments, fixes)
             except DataRefusedError:
                 # A position or part of the work is refused: each is stored separately.
-                await self._write_or_requeue(fixes)
+                try:
+                    await self._write_or_requeue(fixes)
+                except TableRefusesError as error:
+                    self._refusal = error
                 fixes = []
                 await write(work, *arguments, fixes)
             except Exception:
@@ -262,9 +283,11 @@ class TrajectoryWriter:
                 # Already written by the previous holder of the lock, after this was requested.
                 return
             self._requeue_lost()
+            if begun is None:
+                self._refusal = None
             while True:
-                fixes = self._recorder.next_batch(self._clock.time())
-                last, unsaved = not self._recorder.waiting, set[str]()
+                fixes = self._next_batch()
+                last, unsaved = self._refusal is not None or not self._recorder.waiting, set[str]()
                 if last:
                     unsaved, self._unsaved = self._unsaved, set()
                     self._begun += 1
@@ -274,6 +297,12 @@ class TrajectoryWriter:
                         stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
                     ]
                     written = await self._write(known, fixes)
+                except TableRefusesError as error:
+                    self._recorder.requeue(fixes)
+                    self._unsaved |= unsaved
+                    # Poses are stored all the same: else no robot could be registered while it lasts.
+                    self._refusal = error
+                    continue
                 except Exception:
                     self._recorder.requeue(fixes)
                     self._unsaved |= unsaved
@@ -287,25 +316,68 @@ class TrajectoryWriter:
                 # With this commit, earlier relaxed writes of the same session are durable, too.
                 self._jotted.clear()
                 if last and not taken_back:
-                    return
+                    break
+            if begun is None:
+                self._check_tables(known, written)
+
+    def _next_batch(self) -> list[PackedFix]:
+        """Return the oldest positions to be stored; none from a refusal on until :meth:`save` tries again."""
+        return [] if self._refusal is not None else self._recorder.next_batch(self._clock.time())
+
+    def _check_tables(self, known: Sequence[Row], written: WrittenRobots) -> None:
+        """Raise TableRefusesError where no position, or none of several robots, was taken."""
+        if self._refusal is not None:
+            raise self._refusal
+        if written.reason is not None and len(written.refused) == len(known) > 1:
+            self._unsaved |= written.refused
+            raise TableRefusesError(written.reason, "where they are is stored as soon as it goes", "robots")
 
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
-        """Store robots and positions; only data that the database refuses is left out."""
+        """Store robots and positions; only data that the database refuses is left out.
+
+        :raises TableRefusesError: when it refuses every position; nothing was stored then.
+        """
         if not (known or fixes or self._stored or self._jotted):
             return WrittenRobots(set(), set())
         try:
-            return WrittenRobots(
-                await self._database.run(_write, known, fixes, self._stored, self._fence), set()
-            )
+            return await self._write_known(known, fixes)
+        except DataRefusedError as error:
+            fixes = await self._without_tried(fixes, error)
+        return await self._write_apart(known, fixes)
+
+    async def _without_tried(
+        self, fixes: Sequence[PackedFix], error: DataRefusedError
+    ) -> Sequence[PackedFix]:
+        """Store a position of one of several robots, and return the others; raises TableRefusesError."""
+        newest = {fix[0]: fix for fix in fixes}
+        # Of one robot alone nobody knows whether it is at fault.
+        tried = random.sample(sorted(newest), min(TRIED, len(newest))) if len(newest) > 1 else []
+        for robot in tried:
+            try:
+                await self._write_known([], [newest[robot]])
+            except DataRefusedError:
+                continue
+            return [fix for fix in fixes if fix is not newest[robot]]
+        if tried:
+            raise TableRefusesError(error, "positions are kept until it takes them", "trajectories")
+        return fixes
+
+    async def _write_known(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
+        return WrittenRobots(await self._database.run(_write, known, fixes, self._stored, self._fence), set())
+
+    async def _write_apart(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
+        try:
+            return await self._write_known(known, fixes)
         except DataRefusedError as error:
             halves = _halves(known, fixes)
             if halves is None:
                 robot = str((known or fixes)[0][0])
                 if self._news.has(robot, "left out"):
                     log.error("what is to be stored of robot %s is left out: %s", robot, error)
-                return WrittenRobots(set(), {row[0] for row in known})
-        first, second = [await self._write(*half) for half in halves]
-        return WrittenRobots(first.removed | second.removed, first.refused | second.refused)
+                return WrittenRobots(set(), {row[0] for row in known}, error)
+        first, second = [await self._write_apart(*half) for half in halves]
+        refused = first.refused | second.refused
+        return WrittenRobots(first.removed | second.removed, refused, first.reason or second.reason)
 
     async def _write_or_requeue(self, fixes: Sequence[PackedFix]) -> None:
         try:

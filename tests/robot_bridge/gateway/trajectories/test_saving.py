@@ -26,8 +26,14 @@ EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=
 
 
 @pytest.fixture
-async def database(new_database):
-    database = Database(new_database("sqlite"))
+def url(new_database):
+    """Made outside of the test's loop: the first one runs a loop of its own."""
+    return new_database("sqlite")
+
+
+@pytest.fixture
+async def database(url):
+    database = Database(url)
     await database.open()
     yield database
     await database.close()
@@ -261,6 +267,73 @@ async def test_answers_that_are_refused_with_positions_are_written_without_and_e
     assert written == ["answers"]
     await yard.saving.save()
     assert await yard.stored() == ([1.0, 2.0], 2.0)
+
+
+async def refuse(database, table, robots="new.robot is not null"):
+    rule = f"create trigger refusing before insert on {table} when {robots} "
+    await database.run(lambda c: c.exec_driver_sql(rule + "begin select raise(abort, 'no room'); end"))
+
+
+async def allow(database):
+    await database.run(lambda c: c.exec_driver_sql("drop trigger refusing"))
+
+
+async def of_all(database):
+    return sorted(await database.run(lambda c: list(c.execute(select(table.c.robot, table.c.device_time)))))
+
+
+@pytest.fixture
+def crowd(yard):
+    """A yard with another robot; both have told where they are twice."""
+    yard.robots.ready("r2", 2, "sql", 0.0)
+    for name, t in (("r1", 1.0), ("r2", 2.0), ("r1", 3.0), ("r2", 4.0)):
+        assert yard.robots.observe(name, pose_at(t), "sql", t)
+        yard.saving.observe(t, [(name, pose_at(t))])
+    return yard
+
+
+async def test_positions_are_kept_while_none_of_any_robot_is_taken_and_robots_come_in(crowd, database):
+    await refuse(database, "trajectories")
+    for _ in range(2):
+        with pytest.raises(StoreError, match="no room; so it is with every robot: positions are kept"):
+            await crowd.saving.save()
+    crowd.robots.ready("r3", 3, "sql", 5.0)
+    await crowd.saving.save("r3")
+    assert await database.run(stored_robots.names) == ["r1", "r2", "r3"]
+    written = []
+    await crowd.saving.write_with(lambda _connection, fixes: written.append(fixes))
+    assert written == [[]]
+    await allow(database)
+    await crowd.saving.save()
+    assert await of_all(database) == [("r1", 1.0), ("r1", 3.0), ("r2", 2.0), ("r2", 4.0)]
+
+
+async def test_answers_that_meet_a_table_first_that_takes_no_position_are_written_and_these_kept(
+    crowd, database
+):
+    await refuse(database, "trajectories")
+    await crowd.saving.write_with(trajectories.add)
+    await allow(database)
+    await crowd.saving.save()
+    assert len(await of_all(database)) == 4
+
+
+async def test_positions_of_a_robot_that_alone_is_refused_are_left_out(crowd, database):
+    await refuse(database, "trajectories", "new.robot = 'r1'")
+    await crowd.saving.save()
+    await allow(database)
+    await crowd.saving.save()
+    assert await of_all(database) == [("r2", 2.0), ("r2", 4.0)]
+
+
+async def test_robots_of_whom_none_can_be_stored_are_reported_and_stored_later(crowd, database):
+    await refuse(database, "robots", "new.name is not null")
+    with pytest.raises(StoreError, match="every robot: where they are is stored as soon as it goes"):
+        await crowd.saving.save()
+    assert len(await of_all(database)) == 4 and await database.run(stored_robots.names) == []
+    await allow(database)
+    await crowd.saving.save()
+    assert await database.run(stored_robots.names) == ["r1", "r2"] and len(await of_all(database)) == 4
 
 
 async def test_how_a_robot_fell_silent_is_stored(database):
