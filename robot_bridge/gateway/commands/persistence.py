@@ -11,7 +11,7 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Mappin
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
-from sqlalchemy.exc import OperationalError, ProgrammingError
+from sqlalchemy.exc import IntegrityError, OperationalError, ProgrammingError
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from ...core.logs import TroubleNews, log_and_continue
@@ -61,8 +61,9 @@ FORGOTTEN = ("Start", "OpAck", "SetMap")
 """Messages that are void when their robot restarts."""
 Also = Callable[[Connection], None]
 """Further writes in the same transaction."""
-_NO_RIGHT = 1142
-"""MariaDB's code for a missing right, which its driver does not class as PostgreSQL's does."""
+_NOT_DELETED = ((1142,), (1644,))
+"""MariaDB's codes for a missing right and for what a trigger refuses, which its driver does not class as
+PostgreSQL's does."""
 AlsoOf = Callable[[str], Also]
 """Makes the further writes from the id of the command that the robot then carries out."""
 
@@ -228,17 +229,22 @@ def write_bare_aborts(
 
 
 def _withdraw_unlocked(connection: Connection, robots: Sequence[str], kinds: Sequence[str]) -> bool:
-    """Remove messages of ``kinds`` for ``robots``; return false where this account has no right to that."""
+    """Remove messages of ``kinds`` for ``robots``; return false where a right or a trigger forbids it."""
     # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
     for remove in (answers.remove_unlocked, answers.remove_kinds):
         try:
             with connection.begin_nested():
                 remove(connection, robots, kinds)
             return True
-        except (ProgrammingError, OperationalError) as error:
-            if isinstance(error, OperationalError) and getattr(error.orig, "args", ())[:1] != (_NO_RIGHT,):
+        except (ProgrammingError, IntegrityError, OperationalError) as error:
+            code = getattr(error.orig, "args", ())[:1]
+            if isinstance(error, OperationalError) and code not in _NOT_DELETED:
                 raise
-            log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
+            log.warning(
+                "what an Abort makes void stays in sa: a trigger or rule there has to let it go, or an "
+                "administrator has to run: robot-bridge database upgrade (%s)",
+                error.orig,
+            )
     return False
 
 

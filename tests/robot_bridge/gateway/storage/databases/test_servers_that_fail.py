@@ -152,12 +152,23 @@ NO_DELETION = {
         "signal sqlstate '42000' set mysql_errno = 1142, message_text = 'command denied'",
     ),
 }
+REFUSED_DELETION = {
+    "postgresql": (
+        NO_DELETION["postgresql"][0].replace("insufficient_privilege", "exception 'it is kept'"),
+        NO_DELETION["postgresql"][1],
+    ),
+    "mariadb": (
+        "create trigger kept before delete on sa for each row "
+        "signal sqlstate '45000' set message_text = 'it is kept'",
+    ),
+}
 
 
 @SERVERS
-async def test_an_abort_is_written_where_nothing_can_be_withdrawn(url, kind, database):
+@pytest.mark.parametrize("rule", [NO_DELETION, REFUSED_DELETION], ids=["no right", "refused"])
+async def test_an_abort_is_written_where_nothing_can_be_withdrawn(url, kind, database, rule):
     """Read first, it stops the robot; the one behind what waits stops it once more."""
-    with trigger(url, kind, NO_DELETION, "kept", "sa") as client:
+    with trigger(url, kind, rule, "kept", "sa") as client:
         client.sql("insert into sa (robot, op, params) values ('r1', 'SetPosEnd', '{}')")
         writing = partial(write_bare_aborts, robots=["r1"], withdrawn=["SetPosEnd"], emergency=True)
         await database.run(writing)
