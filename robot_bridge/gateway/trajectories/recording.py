@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import math
 import random
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from ...core.clock import Clock
-from ...core.errors import DataRefusedError, StoreError
+from ...core.errors import DataRefusedError, LockedError, StoreError
 from ...core.logs import TroubleNews
 from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
 from ...core.messages.robots import SendPos
@@ -208,8 +209,8 @@ class TrajectoryWriter:
         self._jotted: list[tuple[int, list[PackedFix]]] = []
         """positions that a server may still lose, with the session in which they were written."""
         self._news = TroubleNews()
-        self._refusal: TableRefusesError | None = None
-        """why no position was taken, until some are."""
+        self._refusal: StoreError | None = None
+        """why no position was taken, until :meth:`save` tries again."""
         self._writing = asyncio.Lock()
         self._begun = self._done = 0
         """counts of writes of robots: the number of the last begun one, and of the last one that
@@ -241,11 +242,13 @@ class TrajectoryWriter:
     async def save(self, *robots: str) -> None:
         """Store tracks and current poses, those of ``robots`` in any case; raises StoreError.
 
-        Several callers that wait meanwhile are served by one write. A table that takes nothing of any robot
-        is an error for the caller who names none: robots are registered all the same.
+        Several callers that wait meanwhile are served by one write. A table that takes nothing of any robot,
+        or that somebody has locked, is an error for the caller who names none. Robots are registered all the
+        same, and stored later: after a crash before that they say Ready again.
         """
         self._unsaved.update(robots)
-        await to_its_end(self._save(self._begun if robots else None))
+        with contextlib.suppress(*[LockedError] if robots else []):
+            await to_its_end(self._save(self._begun if robots else None))
 
     async def write_with(self, work: Callable[..., None], *arguments: Any, lasting: bool = False) -> None:
         """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
@@ -269,6 +272,13 @@ class TrajectoryWriter:
                 except TableRefusesError as error:
                     self._refusal = error
                 fixes = []
+                await write(work, *arguments, fixes)
+            except LockedError as error:
+                self._recorder.requeue(fixes)
+                if not fixes:
+                    raise
+                # Robots are answered all the same: they may be asking for a map, or acknowledge an Abort.
+                self._refusal, fixes = error, []
                 await write(work, *arguments, fixes)
             except Exception:
                 self._recorder.requeue(fixes)

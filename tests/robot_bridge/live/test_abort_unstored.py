@@ -200,3 +200,29 @@ def test_what_one_session_has_locked_keeps_nobody_from_what_is_not_locked(served
     driven.say(driven.wait_for("SetPosEnd", 30.0)["id"])
     desk.wait_for_step("target-it-2", "acknowledged")
     assert len(desk.ask("get_commands", {"limit": 5})["commands"]) == 2
+
+
+def test_a_robot_on_its_way_that_connects_again_hears_an_abort_while_robots_are_locked(served, reader):
+    """New robots are let in, too, and those on SQL answered, while positions wait; all is stored later."""
+    driven, desk = served.robot("r1"), served.desk()
+    driven.plug_in(1)
+    desk.send("target-it-2", "r1", "SetPosEnd", x=50.0, y=40.0)
+    driven.say(driven.wait_for("SetPosEnd")["id"])
+    desk.wait_for_step("target-it-2", "acknowledged")
+    with tables_locked(served, "robots", "trajectories"):
+        stand(driven)
+        again, new = served.robot("r1"), served.robot("r3")
+        assert again.ask("Ready", {"magic": 1}, seconds=30.0)["ok"]
+        assert desk.ask("abort", {"command": "abort-it-2", "robot": "r1"}, 30.0)["state"] == "queued"
+        again.say(again.wait_for("Abort")["id"])
+        stand(again)
+        assert new.ask("Ready", {"magic": 3}, seconds=30.0)["ok"]
+        assert new.wait_for("SetMap")
+        stand(new)
+        reader.tell("SendPos", {"x": 40.0, "y": 8.0, "theta": 0.0, "v": 0.0, "t": time.time()})
+        reader.ask("GetMap", {"x": 60.0, "y": 60.0, "area": 2500.0})
+        desk.wait_for_step("target-it-2", "aborted")
+    with contextlib.closing(DatabaseClient(served.database)) as client:
+        wait_until(lambda: client.sql("select name from robots where name = 'r3'"), 20)
+        for name in ("r1", "r3", "s1"):
+            wait_until(lambda name=name: client.sql(f"select 1 from trajectories where robot = '{name}'"), 20)
