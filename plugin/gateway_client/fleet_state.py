@@ -174,6 +174,8 @@ class UpdateBuffer:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._update = StateUpdate(ConnectionStatus(ConnectionPhase.CLOSED))
+        self._names: list[str] = []
+        """The robots of the last table."""
 
     def add(self, **reports: Any) -> None:
         """Add reports by their topics, the fields of :class:`StateUpdate`, all at once.
@@ -181,7 +183,16 @@ class UpdateBuffer:
         ``commands``, ``queues``, ``plans``, ``placed_cones``, ``observations``, ``replanned`` take several.
         """
         with self._lock:
+            if "robots" in reports:
+                self._share_names(reports["robots"])
             self._update.add(**reports)
+
+    def _share_names(self, table: RobotTable) -> None:
+        """Give ``table`` the list of names of the one before, if it has the same ones: the window compares
+        such lists, and need not read the names."""
+        if table.names == self._names:
+            table.names = self._names
+        self._names = table.names
 
     def add_answer(self, answer: RequestResult) -> None:
         """Add the outcome of a request; every one of them is kept."""

@@ -54,10 +54,10 @@ class RemovedRobots(NamedTuple):
 class RobotTable:
     """The newest values of each robot, one row each. A robot keeps its row until one is removed.
 
-    ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
-    it refers to. The table takes ownership of all of them. With ``everything`` there are no other robots;
-    ``removed`` are gone for good. With ``view`` they are those of a view: with ``everything`` all others are
-    out of it, as ``untracked`` are.
+    ``names`` has the n names, no two the same, in a list that is never changed, only replaced; ``numbers`` is
+    (len(COLUMNS), n); ``words`` are the texts that it refers to. The table takes ownership of the latter two.
+    With ``everything`` there are no other robots; ``removed`` are gone for good. With ``view`` they are those
+    of a view: with ``everything`` all others are out of it, as ``untracked`` are.
     """
 
     def __init__(
@@ -75,9 +75,15 @@ class RobotTable:
         self.view = view
         self.names = [] if names is None else names
         self._numbers = np.empty((len(COLUMNS), 0)) if numbers is None else numbers
-        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
+        self._found: tuple[list[str], npt.NDArray[np.intp]] = [], np.empty(0, dtype=np.intp)
+        """The names whose rows were needed last, and these rows."""
         self._words = [] if words is None else words
         self._places = dict(zip(self._words, range(len(self._words)), strict=True))
+
+    @cached_property
+    def _rows(self) -> dict[str, int]:
+        """The row of each robot; most tables are merged into another one without the need for it."""
+        return dict(zip(self.names, range(len(self.names)), strict=True))
 
     def __len__(self) -> int:
         return len(self.names)
@@ -102,7 +108,8 @@ class RobotTable:
         kept = np.delete(np.arange(len(self)), list(rows))
         self.names = [self.names[row] for row in kept.tolist()]
         self._numbers = self._numbers[:, kept]
-        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
+        vars(self).pop("_rows", None)
+        self._found = [], np.empty(0, dtype=np.intp)
 
     def column(self, name: str) -> Numbers:
         """Return one of :data:`COLUMNS`, a view that holds until the next :meth:`merge`."""
@@ -158,7 +165,7 @@ class RobotTable:
         self._use_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
             # The same robots again, as when all drive: no need to search each one's row.
-            self._numbers = numbers
+            self.names, self._numbers = newer.names, numbers
         else:
             rows = self._rows_of(newer.names)
             taken = np.flatnonzero(numbers[received] >= self._numbers[received, rows])
@@ -190,16 +197,29 @@ class RobotTable:
         self._numbers[_TEXTS_AT, : len(self)] = moved[_places(texts, len(words))]
 
     def _rows_of(self, names: list[str]) -> npt.NDArray[np.intp]:
-        known = self._rows
-        for name in names:
-            if name not in known:
-                known[name] = len(self.names)
-                self.names.append(name)
+        """Return the row of each robot of ``names``; new robots are given one."""
+        # Where some robots stand and are not reported, the same others drive in message after message.
+        if names != self._found[0]:
+            try:
+                rows = self._find(names)
+            except KeyError:
+                # To search for new robots takes as long again, and most messages have none.
+                self._add([name for name in names if name not in self._rows])
+                rows = self._find(names)
+            self._found = names, rows
+        return self._found[1]
+
+    def _find(self, names: list[str]) -> npt.NDArray[np.intp]:
+        return np.fromiter(map(self._rows.__getitem__, names), dtype=np.intp, count=len(names))
+
+    def _add(self, names: list[str]) -> None:
+        """Provide rows for new robots."""
+        self._rows.update(zip(names, range(len(self), len(self) + len(names)), strict=True))
+        self.names = [*self.names, *names]
         missing = len(self.names) - self._numbers.shape[1]
         if missing > 0:
             more = np.full((len(COLUMNS), max(16, missing, self._numbers.shape[1])), -np.inf)
             self._numbers = np.concatenate([self._numbers, more], axis=1)
-        return np.fromiter(map(known.__getitem__, names), dtype=np.intp, count=len(names))
 
 
 def _places(places: Numbers, unknown: int) -> npt.NDArray[np.intp]:
@@ -433,7 +453,6 @@ class RobotStates:
         self.fleet: FleetView | None = None
         """The fleet as a whole, where the desk receives the robots in its view only; None otherwise."""
         self._seen = RobotTable()
-        self._names: list[str] = []
         self._by_name: list[int] = []
         self._orders: list[str] = []
         """The sort keys of the robots, by row."""
@@ -466,14 +485,14 @@ class RobotStates:
             # all the time.
             rows = set(gone.rows.tolist())
             self._orders = [order for row, order in enumerate(self._orders) if row not in rows]
-            self._names, self._by_name = [], []
+            self._by_name = []
             self.arrangement += 1
         return gone
 
     def clear(self) -> None:
         """Forget every robot."""
         self._seen = RobotTable()
-        self._names, self._by_name, self._orders = [], [], []
+        self._by_name, self._orders = [], []
         self.fleet = None
         self.generation += 1
         self.arrangement += 1
@@ -505,7 +524,7 @@ class RobotStates:
         xy = np.empty((len(x), 2))
         xy[:, 0], xy[:, 1] = x, seen.column("y")[rows]
         return RobotArrays(
-            names=self._all_names() if rows == slice(None) else seen.names[rows],
+            names=seen.names if rows == slice(None) else seen.names[rows],
             xy=xy,
             theta=seen.column("theta")[rows].copy(),
             v=seen.column("v")[rows].copy(),
@@ -554,12 +573,6 @@ class RobotStates:
     def row_values(self, row: int) -> dict[str, Any]:
         """Return the last values of the robot in ``row``, as received."""
         return self._seen.row_values(row)
-
-    def _all_names(self) -> list[str]:
-        """Return every name by row: the same list object until there are more of them."""
-        if len(self._names) != len(self._seen):
-            self._names = list(self._seen.names)
-        return self._names
 
     def by_name(self) -> list[int]:
         """Return every row, in the order of the robots' names."""

@@ -105,6 +105,27 @@ def test_a_part_of_the_robots_changes_those_alone():
     assert known.row_values(1)["x"] == 1.25
 
 
+def test_messages_of_the_same_robots_share_one_list_of_names_that_newcomers_leave_as_it_is():
+    mailbox, known, robots = UpdateBuffer(), RobotTable(), gateway()
+
+    def receive(seen=EVERYTHING):
+        made = Snapshots(robots, ManualClock(wall=102.5)).after(seen, form=PositionForm.COLUMNS).frame
+        mailbox.add(robots=table_from_frame(made, 7.0))
+        table = mailbox.collect().robots
+        known.merge(table)
+        return table.names
+
+    first = receive()
+    assert receive() is first and known.names is first
+    seen = robots.revision
+    robots.ready("r3", 3, "sql", 102.0)
+    assert receive(seen) == ["r3"]
+    assert first == ["r0", "r1", "r2"] and known.names == [*first, "r3"]
+    robots.observe("r3", SendPos(8.0, 2.5, 0.5, 1.0), "sql", 102.0)
+    assert receive() is not first
+    assert known.row_values(3)["x"] == 8.0
+
+
 def test_the_words_of_a_day_do_not_pile_up():
     mailbox = UpdateBuffer()
     known, robots = RobotTable(), gateway()

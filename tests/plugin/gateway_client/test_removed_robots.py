@@ -123,6 +123,15 @@ def test_rows_move_up_and_what_was_known_of_the_others_moves_with_them():
     assert picture.by_name() == [0, 1, 2]
 
 
+def test_those_that_report_again_do_so_in_the_rows_that_they_moved_to():
+    picture = RobotStates()
+    picture.merge(told("a", "b", "c", "d", received=1.0))
+    picture.merge(told("b", "d", received=2.0))
+    picture.merge(told("b", "d", received=3.0, removed=["a"]))
+    assert picture.arrays(3.0).names == ["b", "c", "d"]
+    assert picture.column("received").tolist() == [3.0, 1.0, 3.0]
+
+
 def test_everything_takes_out_who_is_not_in_it():
     picture = RobotStates()
     picture.merge(told("a", "b", received=1.0))
