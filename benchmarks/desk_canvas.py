@@ -111,6 +111,9 @@ def overlay(data: str, number: int) -> None:
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
     wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_states")
+    state = importlib.import_module("fleet_supervisor.plugin.gateway_client.fleet_state")
+    # As the thread of the connection hands them over.
+    buffer = state.UpdateBuffer()
     desk.state.robots.merge(wire.table_from_rows(stage.fleet.reports(), now[0]))
     # To add a robot takes twice as long as to write it again, and is done once: it is not part of an update.
     while len(view.layer) < number:
@@ -120,10 +123,10 @@ def overlay(data: str, number: int) -> None:
     for _ in range(WARM_UP + UPDATES):
         now[0] += UPDATE_S
         stage.fleet.drive(UPDATE_S)
-        told = wire.table_from_rows(stage.fleet.reports(), now[0])
+        buffer.add(robots=wire.table_from_rows(stage.fleet.reports(), now[0]))
         marks = [time.thread_time()]
         for step in (
-            lambda told=told: desk.state.robots.merge(told),
+            lambda: desk.state.robots.merge(buffer.collect().robots),
             view.show_now,
             stage.canvas.viewport().repaint,
             lambda: view.layer.go_on(desk.state.robots, now[0]),
@@ -285,6 +288,8 @@ def hour(data: str, number: int) -> None:
         if second % 20 == 0:
             stage.application.processEvents()
         if second in (SETTLED, HOUR - 1):
+            # A map being rendered has several images as large as the canvas.
+            stage.wait(lambda: not stage.canvas.isDrawing())
             memory.append(megabytes())
     stage.end(memory)
 
