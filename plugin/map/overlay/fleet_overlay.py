@@ -23,7 +23,7 @@ from ...ui.glyphs import STATE_COLOURS, UNSURE_COLOUR
 from ...ui.language import tr
 from .grouped_robots import BorderHints, DensityPainter, Hint
 from .labels import Labels, NamesPainter, age_in_words
-from .robots_painter import RobotsPainter, circles, paint_circles
+from .robots_painter import NO_CIRCLES, RobotsPainter, circles, paint_circles
 from .scene import InView, MapScene, Screen, in_view, screen_of
 from .task_painter import PathsPainter, PendingCommandPainter
 from .trails import TrailImage, Trails
@@ -41,7 +41,7 @@ class ScenePainter:
         self.robots = RobotsPainter()
         self._names = NamesPainter()
         self._borders = BorderHints()
-        self._circles: list = []
+        self._circles = NO_CIRCLES
         self._viewed: tuple[MapScene, Screen, InView] | None = None
 
     @property

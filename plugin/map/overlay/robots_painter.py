@@ -426,36 +426,43 @@ def _from_the_top(layer: npt.NDArray[np.uint16], y: npt.NDArray[np.float64]) -> 
     return np.argsort(layer * np.uint16(STRIPS) + strip, kind="stable")
 
 
-def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
-    """Return the rows of robots with a known accuracy large enough to see, with (m, 2) corners on the map."""
+Circles = tuple[Rows, Points]
+"""Rows of robots, (m,), and the corners of their circles of accuracy on the map, (m, :data:`CORNERS`, 2)."""
+NO_CIRCLES: Circles = np.empty(0, dtype=np.intp), np.empty((0, CORNERS, 2))
+
+
+def circles(placed: MapScene, view: InView) -> Circles:
+    """Return the circles of the robots with a known accuracy large enough to see."""
     robots = placed.scene.robots
     # NaN compares false.
     wide = view.rows[robots.accuracy.take(view.rows) * view.scale > SMALLEST_CIRCLE]
     if len(wide) > MOST_CIRCLES:
         wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
     if len(wide) == 0:
-        return []
+        return NO_CIRCLES
     corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
-    on_map = placed.transform.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
-    return list(zip(wide.tolist(), on_map, strict=True))
+    return wide, placed.transform.to_map(corners.reshape(-1, 2)).reshape(corners.shape)
 
 
-def paint_circles(
-    painter: QPainter, found: list[tuple[int, Points]], placed: MapScene, screen: Screen
-) -> None:
+def paint_circles(painter: QPainter, found: Circles, placed: MapScene, screen: Screen) -> None:
     """Paint the circles of :func:`circles`: the robot is somewhere inside."""
-    for row, corners in found:
-        look = placed.scene.robots.shown_as[row]
-        colour = QColor(UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]])
-        outline = polygon(screen.pixels(corners))
-        painter.setPen(pen(PAPER, 2.6, 0.55))
-        colour.setAlpha(30)
-        painter.setBrush(colour)
-        painter.drawPolygon(outline)
-        colour.setAlpha(255)
-        painter.setPen(pen(colour, 1.2))
+    rows, corners = found
+    if len(rows) == 0:
+        return
+    looks = placed.scene.robots.shown_as.take(rows).tolist()
+    colours = {look: UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]] for look in {*looks}}
+    halo, outlines = pen(PAPER, 2.6, 0.55), {look: pen(colour, 1.2) for look, colour in colours.items()}
+    fills = {look: QColor(colour) for look, colour in colours.items()}
+    for fill in fills.values():
+        fill.setAlpha(30)
+    pixels = screen.pixels(corners.reshape(-1, 2)).reshape(corners.shape)
+    for look, circle in zip(looks, map(polygon, pixels), strict=True):
+        painter.setPen(halo)
+        painter.setBrush(fills[look])
+        painter.drawPolygon(circle)
+        painter.setPen(outlines[look])
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPolygon(outline)
+        painter.drawPolygon(circle)
 
 
 def _velocities(
