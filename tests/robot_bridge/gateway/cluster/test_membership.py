@@ -150,6 +150,23 @@ async def test_whoever_runs_under_the_name_is_named_with_its_place(own, lease):
     assert socket.gethostname() in str(caught.value) and "--gateway-name" in str(caught.value)
 
 
+async def test_the_name_of_one_that_was_killed_is_free_once_its_lease_ends(lease, clock, monkeypatch):
+    """A busy computer is slow to open its first connections; by that no lease was renewed."""
+    await enter(lease, "killed", "", 0.6)
+    read = lease.read
+
+    async def read_late(*work):
+        monkeypatch.setattr(lease, "read", read)
+        clock.later += RENEW_S
+        return await read(*work)
+
+    monkeypatch.setattr(lease, "read", read_late)
+    started = Membership("killed", lease, clock)
+    await started.join()
+    assert started.trust.holds
+    await started.leave()
+
+
 async def keep_renewing(own, work):
     holding = asyncio.create_task(own.hold())
     try:
