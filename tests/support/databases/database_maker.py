@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -108,7 +109,9 @@ class DatabaseMaker:
 
     def _first(self, kind: str) -> str:
         url = f"sqlite:///{self._folder}/model.db" if kind == "sqlite" else self._server(kind).new_database()
-        run_once(url, revisions.create)
+        with ThreadPoolExecutor(1) as thread:
+            # Fixtures and tests with a running loop ask for it too, and a thread runs one loop at a time.
+            thread.submit(run_once, url, revisions.create).result()
         if kind == "sqlite":
             DatabaseClient(url).sql("pragma wal_checkpoint(truncate)")
         return url

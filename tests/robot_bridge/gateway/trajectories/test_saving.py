@@ -21,6 +21,7 @@ from robot_bridge.gateway.storage.repositories.trajectories import Fix
 from robot_bridge.gateway.storage.schema import trajectories as table
 from robot_bridge.gateway.trajectories.recording import TrajectoryRecorder, TrajectoryWriter
 from tests.support.bridge.busy_database import kept_busy
+from tests.support.patience import until
 
 EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=0.0)
 
@@ -43,8 +44,8 @@ def pose_at(t):
     return SendPos(t, 0.0, 0.0, 0.0, t=t)
 
 
-def told(*times):
-    """Return what waits to be stored of a yard's robot that told where it is at these times."""
+def packed(*times):
+    """Return what waits to be stored of a yard's robot that said where it is at these times."""
     return [trajectories.pack(Fix("r1", t, pose_at(t))) for t in times]
 
 
@@ -90,10 +91,10 @@ async def busy(database):
         yield go
 
 
-async def test_what_is_being_saved_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):
+async def test_what_is_being_saved_when_the_gateway_is_ended_is_stored_once(yard, busy):
     yard.tell(1.0, 2.0)
     saving = asyncio.ensure_future(yard.saving.save())
-    await asyncio.sleep(0.05)
+    await until(lambda: yard.database.waiting)
     saving.cancel()
     await asyncio.gather(saving, return_exceptions=True)
     busy.set()
@@ -101,10 +102,10 @@ async def test_what_is_being_saved_when_the_gateway_is_told_to_end_is_stored_onc
     assert await yard.stored() == ([1.0, 2.0], 2.0)
 
 
-async def test_what_is_being_written_with_answers_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):
+async def test_what_is_being_written_with_answers_when_the_gateway_is_ended_is_stored_once(yard, busy):
     yard.tell(1.0, 2.0)
     writing = asyncio.ensure_future(yard.saving.write_with(trajectories.add))
-    await asyncio.sleep(0.05)
+    await until(lambda: yard.database.waiting)
     writing.cancel()
     await asyncio.gather(writing, return_exceptions=True)
     busy.set()
@@ -121,7 +122,7 @@ async def test_where_a_robot_is_is_never_stored_before_where_it_was(yard, busy):
     writing = asyncio.ensure_future(yard.saving.write_with(fail))
     await asyncio.sleep(0)
     saving = asyncio.ensure_future(yard.saving.save())
-    await asyncio.sleep(0.05)
+    await until(lambda: yard.database.waiting)
     busy.set()
     with pytest.raises(StoreError, match="the disk is full"):
         await writing
@@ -162,10 +163,10 @@ async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
     await yard.saving.save()
     server.kill()
     await yard.saving.save()
-    assert server.kept == told(1.0, 2.0, 3.0, 4.0)
+    assert server.kept == packed(1.0, 2.0, 3.0, 4.0)
 
 
-async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_forgot():
+async def test_a_server_that_is_killed_while_it_stores_is_sent_again_what_it_forgot():
     class KilledOnce(ForgetfulServer):
         async def run(self, write, robots, fixes, stored, fence):
             if self.session == 1:
@@ -178,7 +179,7 @@ async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_for
     await yard.saving.write_with(None)
     yard.tell(3.0)
     await yard.saving.save()
-    assert sorted(server.kept) == sorted(told(1.0, 2.0, 3.0))
+    assert sorted(server.kept) == sorted(packed(1.0, 2.0, 3.0))
 
 
 async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newest(database, busy):
@@ -186,7 +187,7 @@ async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newes
     yard = Yard(database, recorder)
     yard.tell(0.0)
     saving = asyncio.ensure_future(yard.saving.save())
-    await asyncio.sleep(0.05)
+    await until(lambda: yard.database.waiting)
     yard.tell(*map(float, range(1, 1501)))
     assert (recorder.waiting, recorder.given_up) == (1000, 500)
     busy.set()

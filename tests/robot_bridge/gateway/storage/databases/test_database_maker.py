@@ -1,4 +1,4 @@
-"""Databases of PostgreSQL that are given again: as new, or not at all."""
+"""Databases for tests; those of PostgreSQL are given again: as new, or not at all."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 import pytest
 
 from tests.support.databases.database_client import PATIENCE_S, DatabaseClient
+from tests.support.databases.database_maker import DatabaseMaker
 
 CHANGES = [
     "alter table rr add column seen boolean",
@@ -23,6 +24,12 @@ CHANGES = [
 def client(new_database):
     client = DatabaseClient(new_database("postgresql"))
     yield client
+    client.close()
+
+
+async def test_tests_with_a_running_loop_are_given_one(tmp_path):
+    client = DatabaseClient(DatabaseMaker(tmp_path, None)("sqlite"))
+    assert client.sql("select count(*) from rr") == [(0,)]
     client.close()
 
 
