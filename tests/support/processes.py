@@ -21,6 +21,7 @@ from weakref import WeakSet
 
 from tests.support.errors import StageError
 from tests.support.forked_programs import BRIDGE, LINK_MODULES, Program, start_forked
+from tests.support.patience import BUSY
 
 PATIENCE_S = 5.0
 """How long a process may take to end after SIGTERM before it is killed."""
@@ -196,7 +197,7 @@ def freeze(pid: int) -> None:
     :raises ProcessLookupError: when it has ended; StageError when it does not stop.
     """
     os.kill(pid, signal.SIGSTOP)
-    until = time.monotonic() + PATIENCE_S
+    until = time.monotonic() + BUSY * PATIENCE_S
     # Each thread stops when it is given time next, and does something until then.
     while any(_state(thread) not in "TtXZ" for thread in Path(f"/proc/{pid}/task").glob("[0-9]*")):
         if time.monotonic() > until:
