@@ -83,16 +83,16 @@ def unless_refused(attempt):
 def test_too_many_messages_are_refused_and_then_the_connection_is_closed(bridge, path, close_code):
     with connect(f"{bridge.address}{path}") as wire:
         method = "get_positions" if path == "/desk" else "Alive"
-        codes = []
+        refused = []
         with pytest.raises(ConnectionClosed) as caught:
+            # Without waiting for answers in between: a busy machine gives few of them a second.
             for id in range(200):
                 wire.send(json.dumps({"jsonrpc": "2.0", "id": id, "method": method}))
-                if path == "/robot" and id == 0:
-                    wire.recv(START)
+            while True:
                 answer = json.loads(wire.recv(START))
-                codes.append(answer.get("error", {}).get("code"))
-        assert TOO_MANY in codes
-        assert codes.index(TOO_MANY) >= 20
+                if answer.get("error", {}).get("code") == TOO_MANY:
+                    refused.append(answer["id"])
+        assert min(refused) >= 20
         assert caught.value.rcvd.code == 1008
         assert "too many messages" in caught.value.rcvd.reason
     assert "robots" in bridge.desk().ask("get_positions")
@@ -118,23 +118,35 @@ def test_too_many_positions_are_refused_and_then_the_connection_is_closed(bridge
     assert b"too many messages a second" in told
 
 
-def test_whoever_waits_as_told_is_answered_again(bridge):
+def refusal_of_too_many(desk):
+    """Ask for more than a desk may, without waiting for answers in between; return the last refusal."""
+    refusals = []
+    for _ in range(20):
+        asked = {desk.begin("get_positions") for _ in range(30)}
+        # What is refused is answered first.
+        while asked:
+            frame = desk.receive(START)
+            asked.discard(frame.get("id"))
+            if "error" in frame:
+                refusals.append(RefusedError(frame["error"]))
+        if refusals:
+            return refusals[-1]
+    raise AssertionError("600 messages were answered")
+
+
+def test_whoever_waits_as_long_as_is_said_is_answered_again(bridge):
     desk = bridge.desk()
-    with pytest.raises(RefusedError) as caught:
-        for _ in range(60):
-            desk.ask("get_positions")
-    assert caught.value.code == TOO_MANY
-    told = re.search(r"wait (0\.\d\d) s and send fewer", str(caught.value))
-    # Of a second refusal within that time more would be told: the hundredth that is rounded away.
-    time.sleep(float(told[1]) + 0.01)
+    refusal = refusal_of_too_many(desk)
+    assert refusal.code == TOO_MANY
+    seconds = re.search(r"wait (0\.\d\d) s and send fewer", str(refusal))[1]
+    # Of a second refusal within that time more would be said: the hundredth that is rounded away.
+    time.sleep(float(seconds) + 0.01)
     desk.ask("get_positions")
 
 
 def test_an_emergency_stop_is_taken_from_whoever_has_talked_too_much(bridge):
     desk = bridge.desk()
-    with pytest.raises(RefusedError, match="too many messages"):
-        for _ in range(60):
-            desk.ask("get_positions")
+    assert "too many messages" in str(refusal_of_too_many(desk))
     assert desk.ask("emergency_stop", {"command": "stop-in-a-flood"})["in_force"]
     cleared = wait_until(
         lambda: unless_refused(lambda: desk.ask("clear_emergency_stop", {"reason": "tried"}))
@@ -257,7 +269,7 @@ def test_who_takes_nothing_of_what_it_is_sent_is_cut_off(bridge):
     raw.sendall(ask * 15)
     until_line = "operator without a name from 127.0.0.1 takes nothing of what it is sent; cut off"
     while until_line not in bridge.output():
-        assert time.monotonic() - began < 30
+        assert time.monotonic() - began < BUSY * 8
         time.sleep(0.1)
     assert time.monotonic() - began > 1.5
     assert "robots" in bridge.desk().ask("get_positions")

@@ -175,14 +175,16 @@ async def test_what_a_silent_gateway_said_is_not_counted_and_it_is_called_again(
 
 
 async def test_who_has_not_answered_is_called_again(place, monkeypatch):
-    monkeypatch.setattr(stop_relay, "LOOK_S", 0.01)
+    looks = []
+    monkeypatch.setattr(stop_relay, "until_tick", lambda _seconds: looks.append(1) or 0.01)
     task = asyncio.create_task(place.relay.run())
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
     await place.until(lambda: len(place.bus.of(StopCall)) >= 4)
     place.say(StopSeen("a", "stop-number-b", 0, 0, 0))
-    await asyncio.sleep(0.05)
     calls = len(place.bus.of(StopCall))
-    await asyncio.sleep(0.1)
+    looks.clear()
+    # At the database and at who has not answered.
+    await place.until(lambda: len(looks) >= 10)
     assert len(place.bus.of(StopCall)) == calls
     task.cancel()
     await asyncio.gather(task, return_exceptions=True)

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import shutil
 import sqlite3
+import threading
 import time
 from functools import partial
 from pathlib import Path
@@ -20,6 +21,7 @@ from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
 from tests.support.bridge.busy_database import done_together
 from tests.support.databases.database_client import DatabaseClient
+from tests.support.patience import START
 
 
 @pytest.fixture
@@ -271,17 +273,18 @@ async def test_two_transactions_that_lock_each_other_out_are_both_done(url):
     one, two = Database(url), Database(url)
     await one.run(add, "a")
     await one.run(add, "b")
-    met = asyncio.Event()
-    loop = asyncio.get_running_loop()
+    locked = {"a": threading.Event(), "b": threading.Event()}
 
-    def cross(connection, first, second):
+    def cross(connection, first, second, later=0.0):
         connection.execute(rr.update().where(rr.c.robot == first).values(op="Stopped"))
-        loop.call_soon_threadsafe(met.set)
-        time.sleep(0.3)
+        locked[first].set()
+        assert locked[second].wait(START)
+        # PostgreSQL looks for this after a second, after which a wait ends as well: the second to wait has
+        # to wait still when the first is refused.
+        time.sleep(later)
         connection.execute(rr.update().where(rr.c.robot == second).values(op="Stopped"))
 
-    await asyncio.gather(one.run(cross, "a", "b"), two.run(cross, "b", "a"))
-    assert met.is_set()
+    await asyncio.gather(one.run(cross, "a", "b"), two.run(cross, "b", "a", 0.5))
     await one.close()
     await two.close()
 

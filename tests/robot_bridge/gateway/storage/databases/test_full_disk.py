@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
-import time
 from pathlib import Path
 
 import pytest
@@ -13,6 +11,7 @@ from sqlalchemy import insert, select
 from robot_bridge.core.errors import StoreError
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.schema import rr
+from tests.support.bridge.busy_database import done_together
 from tests.support.errors import StageError
 from tests.support.faults.disk import Disk, DiskWithPower
 
@@ -63,21 +62,14 @@ async def test_what_only_reads_succeeds_beside_what_cannot_be_written(disk):
     await database.open()
     await database.run(add, "first")
     disk.fill()
-    # They wait for the database together, and so are done together.
-    busy = asyncio.create_task(database.read(wait))
     works = [database.run(add, "x" * 60, 900), database.read(names), database.run(add, "x" * 60, 900)]
-    written, read, again = await asyncio.gather(*works, return_exceptions=True)
-    await busy
+    written, read, again = await done_together(database, *works)
     assert "disk is full" in str(written) and isinstance(again, StoreError)
     assert read == ["first"]
     disk.free()
     await database.run(add, "second")
     assert await database.read(names) == ["first", "second"]
     await database.close()
-
-
-def wait(_connection):
-    time.sleep(0.2)
 
 
 def add(connection, robot, times=1):

@@ -18,7 +18,7 @@ from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.roles.blocking_sessions import end_blocking_sessions
 from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from tests.robot_bridge.gateway.storage.roles.yards import GATEWAY, MINE, OTHER, RefusedError
-from tests.support.patience import START
+from tests.support.bridge.bridge_programs import wait_until
 
 NO_LIMITS = {
     "postgresql": [
@@ -231,10 +231,14 @@ def test_a_robots_statement_ends_when_it_takes_too_long(yard):
         for statement in NO_LIMITS[yard.kind]:
             session.run(statement)
         sleeping = thread.submit(session.run, sleep)
-        time.sleep(2.1)
-        run_once(yard.address(GATEWAY), end_blocking_sessions, 2)
+
+        def has_ended():
+            run_once(yard.address(GATEWAY), end_blocking_sessions, 2)
+            return sleeping.done()
+
+        wait_until(has_ended)
         with pytest.raises(RefusedError):
-            sleeping.result(timeout=START)
+            sleeping.result()
 
 
 def test_others_transactions_are_left_alone(yard):
