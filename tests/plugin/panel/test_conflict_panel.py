@@ -276,7 +276,8 @@ def test_what_the_robots_can_do_is_asked_again_while_somebody_looks(
     wait(lambda: len(gateway.requests_of("get_ways_out")) >= 3, what="three questions")
     assert gateway.requests_of("get_ways_out")[-1] == {"robot": "r1", "other": "r2"}
     conflicts.dock.tabs.setCurrentIndex(0)
-    QTest.qWait(300)
+    conflicts.desk.abort_all()
+    wait(lambda: gateway.requests_of("abort_all"), what="all that was asked before")
     asked = len(gateway.requests_of("get_ways_out"))
     QTest.qWait(600)
     assert len(gateway.requests_of("get_ways_out")) == asked

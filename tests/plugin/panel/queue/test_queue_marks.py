@@ -9,7 +9,6 @@ from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import QRect
 from qgis.PyQt.QtGui import QColor, QImage
-from qgis.PyQt.QtTest import QTest
 
 PLACES = [(60.0, 50.0), (80.0, 50.0), (80.0, 70.0)]
 
@@ -45,17 +44,17 @@ def is_ringed(iface, place):
     return any(abs(c.red() - orange.red()) + abs(c.green() - orange.green()) < 40 for c in ring)
 
 
-def test_marks_are_painted_where_the_tasks_are_and_go_with_the_map(marks, iface):
-    QTest.qWait(100)
-    assert [is_ringed(iface, place) for place in PLACES[1:]] == [True, True]
+def test_marks_are_painted_where_the_tasks_are_and_go_with_the_map(marks, iface, wait):
+    def are_painted():
+        return all(is_ringed(iface, place) for place in PLACES[1:])
+
+    wait(are_painted, what="the marks")
     iface.look_at(40, 30, 130, 110)
-    QTest.qWait(100)
-    assert [is_ringed(iface, place) for place in PLACES[1:]] == [True, True]
+    wait(are_painted, what="the marks elsewhere")
 
 
-def test_marks_go_with_the_queue_that_they_are_of(marks, at_desk, iface):
-    QTest.qWait(100)
-    assert is_ringed(iface, PLACES[2])
+def test_marks_go_with_the_queue_that_they_are_of(marks, at_desk, iface, wait):
+    wait(lambda: is_ringed(iface, PLACES[2]), what="the mark")
     at_desk.desk.selection.select("r2")
     assert not is_ringed(iface, PLACES[2])
 
