@@ -23,6 +23,7 @@ from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QToolButton
 
 from tests.support.databases.frozen_layer import frozen_for_layers, layer_in_database
+from tests.support.patience import START
 
 SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
 ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
@@ -414,6 +415,7 @@ def test_a_draft_whose_layer_does_not_answer_is_not_sent_before_it_does(
         assert hand.nothing_sent()
         assert hand.drafts.draft.can_be_overridden
     readers[0].join()
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", START)
     hand.click((70, 55))
     assert hand.complained("enters the keepout Bay.")
     hand.click((20, 20))
@@ -431,6 +433,7 @@ def test_what_was_not_read_for_a_leg_is_read_with_the_next_one(
         assert hand.complained("The layer Bays has not answered for ")
         readers = [one for one in threading.enumerate() if isinstance(one, scheduling.ReadingThread)]
     readers[0].join()
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", START)
     hand.click((95, 55))
     assert "The route enters the keepout Bay" in hand.draft_text
 

@@ -26,7 +26,7 @@ from robot_bridge.gateway.storage.singleton_lock import (
 )
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_server import add_accounts
-from tests.support.patience import START, until
+from tests.support.patience import BUSY, START, until
 
 HOLDER = """
 import asyncio, sys
@@ -106,6 +106,14 @@ async def holding(gateway):
     return asyncio.create_task(gateway.hold())
 
 
+async def holds(gateway):
+    try:
+        await asyncio.to_thread(gateway._lock.ping)
+    except (BridgeError, AssertionError):
+        return False
+    return True
+
+
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
     gateway = SingletonLock(address)
@@ -113,13 +121,9 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
     server.kill()
     await asyncio.sleep(0.5)
     server.start()
-    for _ in range(100):
-        await asyncio.sleep(0.1)
-        try:
-            await asyncio.to_thread(gateway._lock.ping)
-            break
-        except (BridgeError, AssertionError):
-            continue
+    async with asyncio.timeout(10 * BUSY):
+        while not await holds(gateway):
+            await asyncio.sleep(0.1)
     with pytest.raises(BridgeError, match="another gateway runs on it"):
         await SingletonLock(address).acquire()
     assert not hold.done()

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import threading
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 
 from robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot, StraightTravel
 from robot_bridge.core.assignment.plan import document_of
@@ -131,28 +133,60 @@ def test_what_is_left_is_planned_by_whoever_is_there(trio, robots, name):
     leader.start_gateway()
 
 
-def wires(trio, name):
-    """Return robots that do nothing by themselves, at gateway a and at b."""
+class Speaker:
+    """Says where robots are, again and again: on a busy machine a step takes longer than a silence may."""
+
+    def __init__(self):
+        self._lock, self._over, self._said = threading.Lock(), threading.Event(), {}
+        self._thread = threading.Thread(target=self._repeat, daemon=True)
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._over.set()
+        self._thread.join()
+
+    def say(self, wire, x, y, v=0.0):
+        with self._lock:
+            self._said[wire] = {"x": x, "y": y, "theta": 0.5, "v": v}
+            wire.tell("SendPos", self._said[wire])
+        wire.listen(0.1)
+
+    def _repeat(self):
+        while not self._over.wait(0.5):
+            with self._lock:
+                for wire, place in self._said.items():
+                    # Its gateway was killed, or the test is over.
+                    with contextlib.suppress(ConnectionClosed, OSError):
+                        wire.tell("SendPos", place)
+
+
+@pytest.fixture
+def speaker():
+    with Speaker() as speaker:
+        yield speaker
+
+
+@pytest.fixture
+def wires(trio, name, speaker):
+    """Robots that do nothing by themselves, at gateway a and at b."""
     places = {f"{name}-r1": (20.0, 40.0), f"{name}-r2": (20.0, 46.0)}
     at = (trio.a, trio.b)
-    return {
-        robot: trio.robot(bridge, robot, at=place)
-        for bridge, (robot, place) in zip(at, places.items(), strict=True)
-    }
-
-
-def say_where(wire, x, y, v=0.0):
-    """Have a robot say where it is: one that is not heard for long is not sent anywhere."""
-    wire.tell("SendPos", {"x": x, "y": y, "theta": 0.5, "v": v})
-    wire.listen(0.1)
+    robots = {}
+    for bridge, (robot, place) in zip(at, places.items(), strict=True):
+        robots[robot] = trio.robot(bridge, robot, at=place)
+        speaker.say(robots[robot], *place)
+    return robots
 
 
 def state_of(desk, robot):
     return desk.queues.get(robot, {}).get("state")
 
 
-def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name):
-    robots = wires(trio, name)
+def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name, wires, speaker):
+    robots = wires
     ada, ben, cleo = desks_of(trio, robots)
     ben.ask("submit_plan", submission(name, robots))
     for wire in robots.values():
@@ -167,7 +201,7 @@ def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name):
         ada.ask("resume_plan", {"plan": name, "revision": 1})
     assert refused.value.data["state"] == "paused"
     for wire, y in zip(robots.values(), (40.0, 46.0), strict=True):
-        say_where(wire, 20.0, y)
+        speaker.say(wire, 20.0, y)
     going_on = ada.ask("resume_plan", {"plan": name, "revision": paused["revision"]})
     cleo.until(lambda: is_in(cleo, name, "driven"))
     cleo.until(lambda: {state_of(cleo, robot) for robot in robots} == {"running"})
@@ -192,10 +226,9 @@ def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name):
 
 
 @pytest.mark.parametrize("round", range(2))
-def test_a_robot_has_one_plan_whichever_gateway_is_asked(trio, name, round):
-    robots = wires(trio, name)
-    ada, ben, _ = desks_of(trio, robots)
-    plans = [submission(f"{name}-{number}", robots) for number in range(2)]
+def test_a_robot_has_one_plan_whichever_gateway_is_asked(trio, name, wires, round):
+    ada, ben, _ = desks_of(trio, wires)
+    plans = [submission(f"{name}-{number}", wires) for number in range(2)]
     asked = [(desk, desk.begin("submit_plan", plan)) for desk, plan in zip((ada, ben), plans, strict=True)]
     entered = []
     for desk, id in asked:
@@ -209,9 +242,9 @@ def test_a_robot_has_one_plan_whichever_gateway_is_asked(trio, name, round):
     ben.ask("clear_plan", {"plan": plan})
 
 
-def test_tasks_are_taken_over_by_a_robot_of_another_gateway(trio, name):
+def test_tasks_are_taken_over_by_a_robot_of_another_gateway(trio, name, wires):
     """The task that is being done, too: its robot is aborted by its own gateway."""
-    giver, taker = robots = wires(trio, name)
+    giver, taker = robots = wires
     cleo = desks_of(trio, robots)[2]
     tasks = [
         {"task": f"{name}-t{k}", "x": 30.0 + k, "y": 40.0, "path": [[20.0, 40.0], [30.0 + k, 40.0]]}
@@ -232,10 +265,12 @@ def test_tasks_are_taken_over_by_a_robot_of_another_gateway(trio, name):
     cleo.until(lambda: state_of(cleo, giver) == "paused")
 
 
-def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
+def test_a_robot_gives_way_to_one_of_another_gateway(trio, name, speaker):
     first, second = f"{name}-r1", f"{name}-r2"
     one = trio.robot(trio.a, first, at=(16.0, 8.0))
     two = trio.robot(trio.b, second, at=(13.0, 22.0))
+    speaker.say(one, 16.0, 8.0)
+    speaker.say(two, 13.0, 22.0)
     ada, ben, cleo = desks_of(trio, [first, second])
     ben.send(f"c-{first}", first, "SetPath", points=[[16.0, 8.0], [44.0, 22.0], [90.0, 22.0]])
     ben.send(f"c-{second}", second, "SetPath", points=[[13.0, 22.0], [56.0, 22.0], [56.0, 40.0]])
@@ -253,7 +288,6 @@ def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
     asked = {"robot": first, "other": second, "by": "waiting"}
 
     def resolved():
-        say_where(one, 16.0, 8.0)
         with contextlib.suppress(RefusedError):
             return cleo.ask("resolve_conflict", asked)
 
@@ -261,21 +295,17 @@ def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
     waits_at = one.hear("SetPath")["points"][-1]
     for share in (0.5, 1.0):
         x, y = (16.0 + share * (waits_at[0] - 16.0), 8.0 + share * (waits_at[1] - 8.0))
-        say_where(one, x, y, 1.0 - share)
+        speaker.say(one, x, y, 1.0 - share)
     # Its gateway dies. The one that has it then sends it on once it need not wait any more.
     assert trio.c.sql("select other from holds where robot = ?", first) == [(second,)]
     trio.a.kill_gateway()
     trio.c.sql("update holds set until = 0 where robot = ?", first)
-    say_where(two, 56.0, 22.0, 1.0)
-    say_where(two, 56.0, 40.0)
+    speaker.say(two, 56.0, 22.0, 1.0)
+    speaker.say(two, 56.0, 40.0)
     cleo.wait_for_step(f"c-{second}", "reached")
     one = trio.robot(trio.c, first, at=tuple(waits_at))
-
-    def sent_on():
-        say_where(one, *waits_at)
-        return [call for call in one.calls if call["method"] == "SetPath"]
-
-    (call,) = wait_until(sent_on, 20.0)
+    speaker.say(one, *waits_at)
+    call = one.wait_for("SetPath", 20.0)
     assert call["params"]["points"][-1] == [90.0, 22.0]
     trio.a.start_gateway()
 

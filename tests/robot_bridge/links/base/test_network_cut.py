@@ -118,6 +118,16 @@ def hasty_link(line, tmp_path):
     link.end()
 
 
+def say_where_it_stands(desk, link, name, is_heard):
+    """Have a robot say where it is until that is heard: on a busy machine the link stands still by itself."""
+
+    def say():
+        link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
+        return is_heard()
+
+    desk.until(say)
+
+
 def stand_still(desk, link, line, name, *, abort):
     """Have a link stand still, and its connection die, with a target in its buffer; with an Abort behind."""
     with link.standing_still(2 * PAUSE):
@@ -133,14 +143,12 @@ def test_a_link_that_stood_still_begins_no_target_that_was_aborted_meanwhile(bri
     link, name, desk = hasty_link, "held-robot", bridge.desk()
     desk.ask("subscribe", {"rate": 20})
     link.do("add", name, ["targets"])
-    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
-    desk.wait_for_robots(name)
+    say_where_it_stands(desk, link, name, lambda: (desk.robots.get(name) or {}).get("x") is not None)
     stand_still(desk, link, line, name, abort=True)
     wait_until(lambda: not link.client.is_connected)
     line.mend(reset=True)
     wait_until(lambda: link.adapter.stops == [(name, False)])
-    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
-    desk.wait_for_step(f"stop-{name}", "reached")
+    say_where_it_stands(desk, link, name, lambda: desk.commands[f"stop-{name}"]["state"] == "reached")
     assert link.adapter.commands == []
     # Both come again: what became of the target depends on which of its ends is stored first.
     desk.until(lambda: desk.commands[f"go-{name}"]["state"] in ("aborted", "failed"))
@@ -150,8 +158,7 @@ def test_a_link_that_stood_still_is_asked_again_for_what_is_still_wanted(bridge,
     link, name, desk = hasty_link, "asked-again", bridge.desk()
     desk.ask("subscribe", {"rate": 20})
     link.do("add", name, ["targets"])
-    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
-    desk.wait_for_robots(name)
+    say_where_it_stands(desk, link, name, lambda: (desk.robots.get(name) or {}).get("x") is not None)
     stand_still(desk, link, line, name, abort=False)
     wait_until(lambda: not link.client.is_connected)
     assert link.adapter.commands == []
@@ -164,8 +171,7 @@ def test_an_abort_that_lay_on_the_connection_of_a_link_that_stood_still_is_done(
     link, name, desk = hasty_link, "stopped-asleep", bridge.desk()
     desk.ask("subscribe", {"rate": 20})
     link.do("add", name, ["targets"])
-    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
-    desk.wait_for_robots(name)
+    say_where_it_stands(desk, link, name, lambda: (desk.robots.get(name) or {}).get("x") is not None)
     with link.standing_still(2 * PAUSE):
         desk.send(f"stop-{name}", name, "Abort")
         desk.wait_for_step(f"stop-{name}", "delivered")

@@ -340,9 +340,10 @@ async def test_a_lock_that_is_met_again_and_again_is_waited_for_once_in_a_while(
         for statement in LOCKS[kind]:
             administrator.sql(statement)
         until = time.monotonic() + 60.0
-        while attempts.count(2) < 2 and time.monotonic() < until:
+        # On a busy machine the next one may come after that while.
+        while (attempts.count(2) < 2 or 1 not in attempts) and time.monotonic() < until:
             before = len(tried)
             with pytest.raises(LockedError):
                 await database.run(add_counted, "r1")
             attempts.append(len(tried) - before)
-    assert attempts[0] == 2 and attempts.count(2) == 2 and 1 in attempts
+    assert attempts[0] == 2 and attempts.count(2) >= 2 and 1 in attempts

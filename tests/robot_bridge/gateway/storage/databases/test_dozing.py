@@ -44,12 +44,23 @@ async def wakeup(gateway):
 
 @pytest.fixture
 def told(url):
-    """Return how many notifications came since the last call."""
+    """Return how many notifications came since the last call: all before one of this connection's own."""
     parts = make_url(url)
     where = {"host": parts.host, "port": parts.port, "user": parts.username, "password": parts.password}
     with psycopg.connect(**where, dbname=parts.database, autocommit=True) as connection:
+        came = []
+        connection.add_notify_handler(lambda one: came.append(one.channel))
         connection.execute("listen rr")
-        yield lambda: len(list(connection.notifies(timeout=0.3)))
+        connection.execute("listen last")
+
+        def count():
+            connection.execute("notify last")
+            while "last" not in came:
+                connection.execute("select 1")
+            before, came[:] = came.index("last"), []
+            return before
+
+        yield count
 
 
 def ask(connection):
