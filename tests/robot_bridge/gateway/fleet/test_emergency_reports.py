@@ -332,6 +332,8 @@ async def test_a_disk_that_hangs_holds_no_stop_up(gateway):
     finally:
         reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
         await stopping
+        # What is noted later would wait for another reader, and this process for its thread.
+        pipe.unlink()
         os.close(reader)
     assert gateway.called == ["emergency-stop-0001"]
 
