@@ -45,7 +45,7 @@ register_plugin_package()
 def keep_bytecode():
     """Have Python keep what it compiled of tests and programs, also where the environment says not to.
 
-    Else every worker compiles all tests anew, and every program that they start all of itself.
+    Else every worker compiles all tests again, and every program that they start all of itself.
     """
     sys.dont_write_bytecode = False
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -324,7 +324,7 @@ LONG = (
 def deal_out(items):
     """Deal out the files with many tests and those with few by turns, and before each a long one.
 
-    Those with many reckon, those with few wait for real windows, databases and robots: workers that run one
+    Those with many compute, those with few wait for real windows, databases and robots: workers that run one
     kind all at once would first fight for the processors and then leave them idle. A long one that came late
     would be waited for alone.
     """

@@ -457,12 +457,12 @@ def test_a_link_that_is_cut_off_because_it_does_not_close_leaves_no_socket_behin
     connection.open(gateway.url, "anna")
     wait(lambda: connection.collect_updates().link.phase is ConnectionPhase.CONNECTED)
     release = threading.Event()
-    gc.collect()  # what earlier tests left is not told of here
-    with warnings.catch_warnings(record=True) as told:
+    gc.collect()  # what earlier tests left does not count here
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         gateway._loop.call_soon_threadsafe(release.wait)
         connection.shut_down()
         release.set()
         gc.collect()
-    left = [str(one.message) for one in told if issubclass(one.category, ResourceWarning)]
+    left = [str(one.message) for one in warned if issubclass(one.category, ResourceWarning)]
     assert [line for line in left if "socket" in line.lower()] == []

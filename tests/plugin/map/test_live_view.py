@@ -118,7 +118,7 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
         wait(lambda: len(desk.state.robots) == 1 and desk.state.robots.row("z9") == 0)
         assert len(desk.state.commands) == 0 and desk.selection.last is None
         assert driven.dock.log.view.model().rowCount() == 0
-        # Not for a moment does a row show what another robot told.
+        # Not for a moment does a row show what another robot said.
         assert rows == [0]
         assert "Abort" not in driven.dock.findChild(QLabel, "fleet_draft_text").text()
         assert not is_blue(iface, 62, 40)

@@ -98,7 +98,7 @@ def test_the_tab_shows_them_in_a_theme_that_colours_the_letters_of_tabs(at_desk,
 
 
 def test_the_map_keeps_its_width_whatever_the_panel_has_to_tell(conflicts, tell, gateway, iface, wait):
-    """It would move beneath the mouse of who is about to click, and be drawn anew."""
+    """It would move beneath the mouse of who is about to click, and be drawn again."""
     before = iface.canvas.width()
     names = [f"robot-{k}" for k in range(10, 18)]
     holds = {"until": time.time() + 5.0, "x": 1.0, "y": 2.0, "by": "anna", "command": "c1"}
@@ -142,7 +142,7 @@ def test_a_button_stays_its_robot_s_when_the_other_one_is_told_first(conflicts, 
     tell(meeting("r1", "r2", "crossing"))
     where = gives_way(conflicts, "r1").geometry()
     QTest.mousePress(gives_way(conflicts, "r1"), LEFT)
-    # r1 has come to its end: one that stands is told as the other.
+    # r1 has come to its end: one that stands is named as the other.
     tell(meeting("r2", "r1", "standing", x=51.0))
     assert gives_way(conflicts, "r1").geometry() == where
     assert [text.split("  ")[1].split(":")[0] for text in texts(conflicts)] == ["r2 × r1"]

@@ -104,7 +104,7 @@ def test_a_plan_goes_on_when_the_gateway_that_carries_it_on_is_killed(trio, robo
     for desk in (ben, cleo):
         desk.until(lambda desk=desk: is_in(desk, name, "finished"), 60.0)
     assert placed(trio, name) == dict.fromkeys([f"{name}-c{k}" for k in range(8)], 1)
-    # Every desk was told of every cone, whoever's robot put it down.
+    # Every desk is sent every cone, whoever's robot put it down.
     cones = {f"{name}-c{k}" for k in range(8)}
     for desk in (ben, cleo):
         desk.until(lambda desk=desk: cones <= {one["cone"] for one in desk.placements.values()})

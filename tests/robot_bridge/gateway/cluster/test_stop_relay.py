@@ -243,7 +243,7 @@ async def test_it_ends_when_its_own_row_says_so(place):
     await place.relay.read_stored()
     report = place.stops.report()
     assert (report.in_force, report.cleared_by, report.clear_reason) == (False, "Eve", "clear")
-    # A call that was late does not begin it anew.
+    # A call that was late does not begin it again.
     place.say(CALL)
     await asyncio.sleep(0)
     assert not place.stops.in_force

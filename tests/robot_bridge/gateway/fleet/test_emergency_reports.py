@@ -30,16 +30,16 @@ def patience(monkeypatch):
 
 
 class Listener:
-    """An operator who keeps what is told."""
+    """An operator who keeps what is reported."""
 
     def __init__(self):
         self.reported = []
-        self.told = asyncio.Event()
+        self.comes = asyncio.Event()
 
     def notify(self, method, key, params):
         if method == "emergency":
             self.reported.append((key, params))
-            self.told.set()
+            self.comes.set()
 
 
 @pytest.fixture
@@ -87,9 +87,9 @@ async def test_a_robot_that_is_removed_is_waited_for_no_more(emergency, operator
     await emergency.stop(EmergencyStop("stop-0001"), "Ada")
     before = len(operator.reported)
     emergency.forget("nobody")
-    operator.told.clear()
+    operator.comes.clear()
     emergency.forget("r2")
-    await asyncio.wait_for(operator.told.wait(), 30)
+    await asyncio.wait_for(operator.comes.wait(), 30)
     assert [params["waiting"] for _, params in operator.reported[before:]] == [["r1"]]
     await emergency.clear(ClearEmergencyStop("free"), "Eve")
     before = len(operator.reported)
@@ -105,10 +105,10 @@ async def test_what_many_robots_answer_at_once_is_said_in_one_report(yard, emerg
         await yard.ready(robot)
     await emergency.stop(EmergencyStop("stop-0001"), "Ada")
     before = len(operator.reported)
-    operator.told.clear()
+    operator.comes.clear()
     for robot in crowd:
         emergency.answered(robot, emergency.call_id, refused=False)
-    await asyncio.wait_for(operator.told.wait(), 30)
+    await asyncio.wait_for(operator.comes.wait(), 30)
     assert [params["acknowledged"] for _, params in operator.reported[before:]] == [20]
 
 

@@ -16,7 +16,7 @@ from tests.support.bridge.cut_line import CutLine
 
 CUT = 10.0
 """seconds; a robot of this site is lost after 1.6 s."""
-DRIVING, TOLD, ORDERED, STOPPED, SEEING = ROBOTS = ("driving", "told", "ordered", "stopped", "seeing")
+DRIVING, SENT, ORDERED, STOPPED, SEEING = ROBOTS = ("driving", "sent", "ordered", "stopped", "seeing")
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, lin
     began, goes_on = threading.Event(), threading.Event()
 
     async def during(command):
-        if command.robot == names[TOLD]:
+        if command.robot == names[SENT]:
             began.set()
             await asyncio.to_thread(goes_on.wait, 30)
 
@@ -65,16 +65,16 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, lin
     for robot in (DRIVING, STOPPED):
         go(robot)
         desk.wait_for_step(f"go-{names[robot]}", "acknowledged")
-    go(TOLD)
+    go(SENT)
     wait_until(began.is_set)
 
     line.cut()
     mended_at = time.monotonic() + CUT
-    # On the robots' side: one takes on what it was told, one arrives, one sees something.
+    # On the robots' side: one takes on what it was sent, one arrives, one sees something.
     goes_on.set()
     link.do("position", names[DRIVING], SendPos(60.0, 8.0, 0.0, 0.0))
     link.do("stopped", names[DRIVING])
-    told = begin(link, link.client.ask(names[SEEING], SetObject(30.0, 9.0, "crate", source="crate 1")))
+    asked = begin(link, link.client.ask(names[SEEING], SetObject(30.0, 9.0, "crate", source="crate 1")))
     areas = begin(link, link.client.areas((0.0, 0.0, 200.0, 160.0)))
     # At the desk: one is ordered, one is stopped.
     for name in names.values():
@@ -83,26 +83,26 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, lin
     desk.send(f"stop-{names[STOPPED]}", names[STOPPED], "Abort")
     while (left := mended_at - time.monotonic()) > 0:
         time.sleep(left)
-    assert [c.robot for c in link.adapter.commands] == [names[DRIVING], names[STOPPED], names[TOLD]]
-    assert link.adapter.stops == [] and not told.done() and not areas.done()
+    assert [c.robot for c in link.adapter.commands] == [names[DRIVING], names[STOPPED], names[SENT]]
+    assert link.adapter.stops == [] and not asked.done() and not areas.done()
     line.mend(reset=reset)
 
-    assert told.result(60).ok and areas.result(60).keepouts
+    assert asked.result(60).ok and areas.result(60).keepouts
     desk.wait_for_step(f"stop-{names[STOPPED]}", "acknowledged")
     link.do("position", names[STOPPED], SendPos(36.0, 8.0, 0.0, 0.0))
     link.do("stopped", names[STOPPED])
     desk.wait_for_step(f"go-{names[STOPPED]}", "aborted")
     desk.wait_for_step(f"go-{names[ORDERED]}", "acknowledged")
-    desk.wait_for_step(f"go-{names[TOLD]}", "acknowledged")
+    desk.wait_for_step(f"go-{names[SENT]}", "acknowledged")
     link.do("position", names[DRIVING], SendPos(60.0, 8.0, 0.0, 0.0))
     desk.wait_for_step(f"go-{names[DRIVING]}", "reached")
-    # Each was told once what it was told, and stopped because it was asked to.
+    # Each was sent once what it was to do, and stopped because it was asked to.
     commanded = sorted(command.robot for command in link.adapter.commands)
-    assert commanded == sorted(names[robot] for robot in (DRIVING, STOPPED, TOLD, ORDERED))
+    assert commanded == sorted(names[robot] for robot in (DRIVING, STOPPED, SENT, ORDERED))
     assert {robot for robot, _ in link.adapter.stops} == {names[STOPPED]}
     observed = desk.ask("get_observations", {"robot": names[SEEING]})["observations"]
     assert [one["object"] for one in observed] == ["crate"]
-    for robot in (DRIVING, TOLD, ORDERED):
+    for robot in (DRIVING, SENT, ORDERED):
         states = [step["state"] for step in steps(desk, f"go-{names[robot]}")]
         assert len(states) == len(set(states)), states
 

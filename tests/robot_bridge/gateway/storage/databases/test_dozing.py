@@ -1,4 +1,4 @@
-"""A gateway on PostgreSQL is told of new rows while it dozes, and never begins to doze over one."""
+"""A gateway on PostgreSQL is notified of new rows while it dozes, and never begins to doze over one."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ async def robot(url):
 @pytest.fixture
 async def wakeup(gateway):
     wakeup = gateway.wakeup("rr")
-    # The first time it is told at once, since nobody listened before.
+    # The first time it is notified at once, since nobody listened before.
     assert await wakeup.enable_notifications()
     await wakeup.wait(found=False)
     yield wakeup
@@ -43,7 +43,7 @@ async def wakeup(gateway):
 
 
 @pytest.fixture
-def told(url):
+def notified(url):
     """Return how many notifications came since the last call: all before one of this connection's own."""
     parts = make_url(url)
     where = {"host": parts.host, "port": parts.port, "user": parts.username, "password": parts.password}
@@ -67,30 +67,30 @@ def ask(connection):
     connection.execute(insert(rr).values(robot="r1", op="Alive"))
 
 
-async def test_only_a_gateway_that_dozes_is_told_of_a_request(wakeup, robot, told):
+async def test_only_a_gateway_that_dozes_is_notified_of_a_request(wakeup, robot, notified):
     await robot.run(ask)
-    assert told() == 0
+    assert notified() == 0
     assert await wakeup.enable_notifications()
     await robot.run(ask)
-    assert told() == 1
+    assert notified() == 1
     await wakeup.wait(found=False)
     await robot.run(ask)
-    assert told() == 0
+    assert notified() == 0
 
 
-async def test_a_gateway_that_dozes_is_told_that_a_command_was_read_and_of_nothing_else_that_was(
-    wakeup, robot, told
+async def test_a_gateway_that_dozes_is_notified_that_a_command_was_read_and_of_nothing_else_that_was(
+    wakeup, robot, notified
 ):
     for op in ("Abort", "OpAck"):
         await robot.run(lambda connection, op=op: connection.execute(insert(sa).values(robot="r1", op=op)))
     assert await wakeup.enable_notifications()
     await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "OpAck")))
-    assert told() == 0
+    assert notified() == 0
     await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "Abort")))
-    assert told() == 1
+    assert notified() == 1
 
 
-async def test_a_gateway_wakes_at_once_and_sees_what_it_was_told_of(wakeup, robot):
+async def test_a_gateway_wakes_at_once_and_sees_what_it_was_notified_of(wakeup, robot):
     took = []
     for _ in range(5):
         assert await wakeup.enable_notifications()
@@ -103,16 +103,16 @@ async def test_a_gateway_wakes_at_once_and_sees_what_it_was_told_of(wakeup, robo
     assert min(took) < 0.8  # else it is the second after which it looks unasked
 
 
-async def test_a_gateway_that_looked_unasked_dozes_on(wakeup, robot, told, monkeypatch):
+async def test_a_gateway_that_looked_unasked_dozes_on(wakeup, robot, notified, monkeypatch):
     monkeypatch.setattr(wakeups, "FALLBACK_S", 0.01)
     for _ in range(3):
         assert await wakeup.enable_notifications()
         await wakeup.wait(found=False)
     await robot.run(ask)
-    assert told() == 1
+    assert notified() == 1
 
 
-async def test_a_gateway_that_has_another_connection_begins_to_doze_again(gateway, wakeup, robot, told):
+async def test_a_gateway_that_has_another_connection_begins_to_doze_again(gateway, wakeup, robot, notified):
     assert await wakeup.enable_notifications()
     await robot.run(
         lambda connection: connection.execute(
@@ -122,10 +122,12 @@ async def test_a_gateway_that_has_another_connection_begins_to_doze_again(gatewa
     await gateway.run(lambda connection: connection.execute(text("select 1")).all())
     assert await wakeup.enable_notifications()
     await robot.run(ask)
-    assert told() == 1
+    assert notified() == 1
 
 
-async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_awake(wakeup, robot, told):
+async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_awake(
+    wakeup, robot, notified
+):
     written, go = asyncio.Event(), asyncio.Event()
     loop = asyncio.get_running_loop()
 
@@ -139,24 +141,26 @@ async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_
     assert not await wakeup.enable_notifications()
     go.set()
     await writing
-    assert told() == 0
+    assert notified() == 0
     assert await wakeup.enable_notifications()
 
 
-async def test_a_gateway_that_found_something_as_it_began_to_doze_is_awake_again(wakeup, robot, told):
+async def test_a_gateway_that_found_something_as_it_began_to_doze_is_awake_again(wakeup, robot, notified):
     assert await wakeup.enable_notifications()
     assert await wakeup.enable_notifications()
     await wakeup.wait(found=True)
     await robot.run(ask)
-    assert told() == 0
+    assert notified() == 0
 
 
-async def test_what_a_gateway_was_to_be_told_is_over_with_its_connection(gateway, wakeup, robot, told):
+async def test_what_a_gateway_was_to_be_notified_of_is_over_with_its_connection(
+    gateway, wakeup, robot, notified
+):
     assert await wakeup.enable_notifications()
     await gateway.close()
     # The server notices the end of a connection in its own time.
     until = time.monotonic() + 10 * BUSY
     await robot.run(ask)
-    while told() > 0:
+    while notified() > 0:
         assert time.monotonic() < until
         await robot.run(ask)
