@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
+from pathlib import Path
 from typing import Any
 
 
@@ -23,3 +25,13 @@ def frame(text: str, opcode: int = 1) -> bytes:
     payload = text.encode()
     length = bytes([0x80 | len(payload)]) if len(payload) < 126 else b"\xfe" + len(payload).to_bytes(2, "big")
     return bytes([0x80 | opcode]) + length + bytes(4) + payload
+
+
+def open_sockets(bridge: Any) -> int:
+    """Return how many sockets a gateway has open."""
+    found = 0
+    for entry in Path(f"/proc/{bridge.gateway.pid}/fd").iterdir():
+        # One that was closed meanwhile is none.
+        with contextlib.suppress(FileNotFoundError):
+            found += str(entry.readlink()).startswith("socket:")
+    return found

@@ -15,7 +15,7 @@ from websockets.sync.client import connect
 
 from robot_bridge.protocol.jsonrpc import TOO_MANY
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_sockets import frame, plain_socket
+from tests.support.bridge.bridge_sockets import frame, open_sockets, plain_socket
 from tests.support.patience import BUSY, START
 from tests.support.wire import RefusedError
 
@@ -50,7 +50,7 @@ def bridge(start_bridge, limited_site):
 @pytest.fixture(scope="module")
 def alone(bridge):
     """How many sockets the gateway has open that nobody is connected to."""
-    return sockets(bridge)
+    return open_sockets(bridge)
 
 
 @pytest.fixture(autouse=True)
@@ -58,17 +58,7 @@ def nobody_is_left(bridge, alone):
     yield
     bridge.hang_up()
     bridge._wires.clear()
-    wait_until(lambda: sockets(bridge) <= alone)
-
-
-def sockets(bridge):
-    """Return how many sockets the gateway has open."""
-    found = 0
-    for entry in Path(f"/proc/{bridge.gateway.pid}/fd").iterdir():
-        # One that was closed meanwhile is none.
-        with contextlib.suppress(FileNotFoundError):
-            found += str(entry.readlink()).startswith("socket:")
-    return found
+    wait_until(lambda: open_sockets(bridge) <= alone)
 
 
 def unless_refused(attempt):

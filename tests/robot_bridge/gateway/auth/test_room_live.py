@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_sockets import open_sockets
 from tests.support.patience import START
 
 # A place is a newcomer's for as long as so many silent ones take to come: a client that is held up between
@@ -38,22 +39,30 @@ def gateway_with_accounts(start_bridge, limited_site, accounts_of):
     return bridge, accounts_of(bridge).operator("Ada", "operator")
 
 
+@pytest.fixture(scope="module")
+def alone(open_gateway, gateway_with_accounts):
+    """How many sockets each gateway has open that nobody is connected to."""
+    return {one: open_sockets(one) for one in (open_gateway, gateway_with_accounts[0])}
+
+
 @pytest.fixture
-def bridge(open_gateway):
+def bridge(open_gateway, alone):
     yield open_gateway
-    _hang_up(open_gateway)
+    _hang_up(open_gateway, alone)
 
 
 @pytest.fixture
-def guarded(gateway_with_accounts):
+def guarded(gateway_with_accounts, alone):
     """A gateway with accounts, and what an operator connects with there."""
     yield gateway_with_accounts
-    _hang_up(gateway_with_accounts[0])
+    _hang_up(gateway_with_accounts[0], alone)
 
 
-def _hang_up(bridge):
+def _hang_up(bridge, alone):
+    """Return when the gateway has noticed it: the next test needs all places."""
     bridge.hang_up()
     bridge._wires.clear()
+    wait_until(lambda: open_sockets(bridge) <= alone[bridge])
 
 
 @contextlib.contextmanager
