@@ -12,6 +12,7 @@ from websockets.sync.client import connect
 
 from robot_bridge.core.robotmap.binary import decode
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.patience import BUSY
 from tests.support.robots.robot_wires import RobotWire, SqlRobot, map_bytes
 from tests.support.wire import RefusedError
 
@@ -226,6 +227,6 @@ def test_a_web_page_is_not_let_in(bridge, path):
 def test_a_connection_that_speaks_no_websocket_harms_nobody(bridge):
     with socket.create_connection(("127.0.0.1", bridge.port)) as link:
         link.sendall(b"\x00\xff nonsense\r\n\r\n")
-        link.settimeout(5)
+        link.settimeout(BUSY * 5)
         assert b"Traceback" not in link.recv(4096)
     assert RobotWire(f"{bridge.address}/robot").ask("Ready", {"magic": 1})["ok"] is True

@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
+from tests.support.patience import BUSY
 
 PING, CONTINUED = 9, 0
 NAMES = (f"stream-{number}" for number in itertools.count())
@@ -73,7 +74,7 @@ def test_a_wrong_position_is_told_and_the_right_ones_around_it_count(bridge, des
     stream = call("Ready", 1, magic=7) + pose(1) + pose(2, x="far") + pose(3)
     with send(bridge, robot, stream, size) as raw:
         wait_until(lambda: known(desk, robot).get("x") == 3.0)
-        raw.settimeout(5)
+        raw.settimeout(BUSY * 5)
         told = b""
         while b"Expected `float`" not in told:
             told += raw.recv(1 << 16)
@@ -120,7 +121,7 @@ def test_a_robot_that_drives_and_says_only_that_it_is_alive_is_marked(bridge, de
 
 def test_nothing_counts_from_a_robot_that_is_not_ready(bridge, desk, robot):
     with send(bridge, robot, pose(1) + pose(2), 100_000) as raw:
-        raw.settimeout(5)
+        raw.settimeout(BUSY * 5)
         told = b""
         while told.count(b"has not said Ready") < 2:
             told += raw.recv(1 << 16)

@@ -18,6 +18,7 @@ from tests.support.bridge.bridge_programs import wait_until
 
 ALL_AT_ONCE = 65_536, 0.0
 HELD_BYTES = 8_192
+KEPT = 4096
 CUT = 10.0
 """seconds for which a line is cut; a robot of an impatient site is lost after 1.6 s."""
 
@@ -28,6 +29,8 @@ class CutLine:
     def __init__(self, port: int) -> None:
         self._port = port
         self._pace = ALL_AT_ONCE
+        self.passed_back = b""
+        """The last bytes from the port that are at the other end of a line."""
         self._sockets: list[socket.socket] = []
         self._is_whole, self._is_whole_back = threading.Event(), threading.Event()
         self.mend()
@@ -88,6 +91,8 @@ class CutLine:
                 time.sleep(seconds)
                 is_whole.wait()
                 target.sendall(data)
+                if target is near:
+                    self.passed_back = (self.passed_back + data)[-KEPT:]
             is_whole.wait()
             target.shutdown(socket.SHUT_WR)
 

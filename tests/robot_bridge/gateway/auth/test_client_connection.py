@@ -46,7 +46,7 @@ class Host:
         visitor.handle_at_once(self._at_once)
         async for message in visitor:
             if message == "wait":
-                await asyncio.wait_for(self.goes_on.wait(), 5)
+                await asyncio.wait_for(self.goes_on.wait(), BUSY * 5)
             self.came.append(("queued", message))
 
     def _at_once(self, message):

@@ -174,8 +174,7 @@ def test_an_abort_that_lay_on_the_connection_of_a_link_that_stood_still_is_done(
     say_where_it_stands(desk, link, name, lambda: (desk.robots.get(name) or {}).get("x") is not None)
     with link.standing_still(2 * PAUSE):
         desk.send(f"stop-{name}", name, "Abort")
-        desk.wait_for_step(f"stop-{name}", "delivered")
-        desk.listen(0.2)
+        wait_until(lambda: b'"Abort"' in line.passed_back)
         line.cut()
     # Nothing comes through the line, which is cut: it was there already.
     wait_until(lambda: link.adapter.stops == [(name, False)])
