@@ -6,6 +6,8 @@ import math
 
 import pytest
 
+from tests.support.bridge.bridge_programs import wait_until
+
 LOOP = [[60.0, 20.0], [66.0, 20.0], [66.0, 24.0], [60.0, 24.0], [60.0, 20.0]]
 TARGETS = {"over-websocket": (24.0, 23.0), "over-sql": (44.0, 17.0)}
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
@@ -65,10 +67,12 @@ def test_abort_stops_a_driving_robot_and_it_stays(desk):
     stood = desk.robots["stopped"]["x"]
     assert 80.0 < stood < 120.0
     desk.snapshots.clear()
-    desk.listen(1.0)
-    seen = [r for s in desk.snapshots for r in s["robots"] if r["robot"] == "stopped"]
-    assert len(seen) > 5
-    assert all(r["v"] == 0.0 and abs(r["x"] - stood) < 0.1 for r in seen)
+
+    def seen():
+        return [r for s in desk.snapshots for r in s["robots"] if r["robot"] == "stopped"]
+
+    desk.until(lambda: len(seen()) > 5)
+    assert all(r["v"] == 0.0 and abs(r["x"] - stood) < 0.1 for r in seen())
 
 
 def test_a_path_that_ends_where_it_began_is_driven_all_round(desk):
@@ -82,8 +86,14 @@ def test_a_path_that_ends_where_it_began_is_driven_all_round(desk):
 
 def test_the_way_of_each_robot_is_stored(desk, bridge):
     desk.wait_for_step("path-round", "reached")
-    desk.listen(1.5)
-    way = bridge.sql("select received_at, x, y from trajectories where robot = 'round' order by id")
-    assert [at for at, _, _ in way] == sorted(at for at, _, _ in way)
+
+    def stored():
+        return bridge.sql("select received_at, x, y from trajectories where robot = 'round' order by id")
+
+    def has(x, y):
+        return any(math.hypot(px - x, py - y) < 1.0 for _, px, py in stored())
+
     for x, y in LOOP:
-        assert min(math.hypot(px - x, py - y) for _, px, py in way) < 1.0
+        wait_until(lambda x=x, y=y: has(x, y))
+    times = [at for at, _, _ in stored()]
+    assert times == sorted(times)
