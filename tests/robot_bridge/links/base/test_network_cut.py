@@ -142,7 +142,7 @@ def stand_still(desk, link, line, name, *, abort):
     """Have a link stand still, and its connection die, with a target in its buffer; with an Abort behind."""
     with standing_still(link):
         desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-        desk.wait_for_step(f"go-{name}", "delivered")
+        wait_until(lambda: b'"SetPosEnd"' in line.passed_back)
         line.cut()
         if abort:
             desk.send(f"stop-{name}", name, "Abort")
