@@ -10,6 +10,7 @@ import pytest
 from websockets.asyncio.server import serve
 from websockets.frames import CloseCode
 
+from robot_bridge.core.clock import ManualClock, StandstillWatch
 from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base import link_websocket
@@ -223,6 +224,24 @@ async def test_what_came_of_a_stop_is_told_before_all_else_that_waits(tmp_path):
         writing.cancel()
         link.end()
     assert sent == ["the stop is done", "a position"]
+
+
+async def test_of_what_waited_while_a_link_stood_still_only_an_abort_is_handled(tmp_path):
+    link = LinkOnTheLine(SimpleNamespace(address="ws://127.0.0.1:1"), tmp_path)
+    await asyncio.to_thread(link.end)
+    handled, clock = [], ManualClock()
+    connection = LinkWebSocket(link._settings)
+    connection._standstill = StandstillWatch(0.5, clock)
+    other = SimpleNamespace(is_connected=True, handle=lambda call: handled.append(call.method))
+    frames = [
+        jsonrpc.call(method, {"robot": "r1"}, f"r1/{n}") for n, method in enumerate(("SetPosEnd", "Abort"))
+    ]
+    for frame in frames:
+        connection._receive(frame, other)
+    clock.advance(0.6)
+    for frame in frames:
+        connection._receive(frame, other)
+    assert handled == ["SetPosEnd", "Abort", "Abort"]
 
 
 async def test_an_emergency_stop_is_told_as_one_and_what_is_only_seen_answers_by_itself(tmp_path):
