@@ -213,13 +213,18 @@ class NotifyBus:
     def _notify_of_stop(
         self, connection: Connection[Any], content: bytes, loop: asyncio.AbstractEventLoop
     ) -> None:
-        """Notify in the thread of stops; if that fails, the loop sends it in its turn."""
+        """Notify in the thread of stops; if that connection alone fails, the loop sends it in its turn."""
         try:
             connection.execute(_NOTIFY, _notification(STOP, content))
         except Exception as error:
             log.debug("a stop is notified of in its turn: %s", error)
             with contextlib.suppress(RuntimeError):
-                loop.call_soon_threadsafe(self._outgoing.add, STOP, content)
+                loop.call_soon_threadsafe(self._send_in_turn, connection, content)
+
+    def _send_in_turn(self, connection: Connection[Any], content: bytes) -> None:
+        """Queue a stop that ``connection`` did not take, unless that was lost with the others: it is old."""
+        if connection is self._stopping:
+            self._outgoing.add(STOP, content)
 
     def _end_stopping(self) -> None:
         connection, self._stopping = self._stopping, None

@@ -415,3 +415,29 @@ async def test_a_bus_ends_while_the_server_hangs(postgresql_server, fleet_url):
         await asyncio.wait_for(asyncio.to_thread(bus._thread.shutdown), 20 * BUSY)
     finally:
         os.kill(pid, signal.SIGCONT)
+
+
+async def test_a_stop_of_before_an_outage_is_not_sent_after_it(fleet_url, monkeypatch):
+    """A robot that it was about may have been sent on since."""
+    monkeypatch.setattr("robot_bridge.gateway.cluster.bus.RETRY_S", 0.01)
+    address = read_address(fleet_url)
+    bus, heard = NotifyBus(address, "a"), []
+    task = asyncio.create_task(bus.run(lambda *message: heard.append(message)))
+    await until(lambda: bus.connected)
+    lost, pid = bus._stopping, bus._stopping.info.backend_pid
+    freeze(pid)
+    try:
+        for number in range(3):
+            assert bus.publish(STOP, f"before, {number}".encode())
+        with psycopg.connect(fleet_url, autocommit=True) as owner:
+            owner.execute("select pg_terminate_backend(pid) from pg_stat_activity where query like 'listen%'")
+        await until(lambda: bus.connected and bus._stopping is not lost)
+        # Its thread is through with them, and the loop with what that has left.
+        await asyncio.wrap_future(bus._thread.submit(int))
+        assert bus.publish(STOP, b"after")
+        await until(lambda: (STOP, b"after") in heard)
+        assert heard == [(STOP, b"after")]
+    finally:
+        os.kill(pid, signal.SIGCONT)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
