@@ -50,7 +50,10 @@ class ClusterRelays:
         )
         fleet.emergency.relay_by(self.stops)
         assert fleet.aborts is not None
-        self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database, fleet.aborts)
+        open_commands = fleet.queue_context.commands
+        self.requests = RequestRelay(
+            handlers, fleet.robots, membership, exchange, database, fleet.aborts, open_commands
+        )
         self._aborts = fleet.aborts
         self._positions = PositionRelay(fleet.robots, membership, exchange, largest)
         self._details = DetailRelay(fleet.robots, membership, exchange, largest)

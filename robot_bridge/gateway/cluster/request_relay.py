@@ -8,7 +8,6 @@ second goes over the bus as well, to the robot's open connection, and is noted a
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import uuid
 from collections.abc import Callable, Sequence
@@ -129,6 +128,13 @@ class AbortNoter(Protocol):
         """Have Aborts stored no more."""
 
 
+class OpenCommands(Protocol):
+    """The commands of this gateway that have not ended."""
+
+    def robot_of(self, command: str) -> str | None:
+        """Return the robot of an open command."""
+
+
 class RequestRelay:
     """Answers operators by ``handlers``, but relays requests about robots of other gateways."""
 
@@ -140,6 +146,7 @@ class RequestRelay:
         exchange: Exchange,
         database: Database,
         noter: AbortNoter,
+        own: OpenCommands,
     ) -> None:
         self._handlers = handlers
         self._robots = robots
@@ -147,6 +154,7 @@ class RequestRelay:
         self._exchange = exchange
         self._database = database
         self._noter = noter
+        self._own = own
         self._paused: dict[str, str] = {}
         """the ids of the Aborts noted for pauses that could not be relayed, by robot."""
         self._asked = asyncio.Event()
@@ -187,17 +195,25 @@ class RequestRelay:
         return result
 
     async def _robot_of(self, request: DeskRequest[Any]) -> str | None:
+        """Return the robot of a request, None where there is no such command; raises StoreError."""
         robot: str | None = getattr(request, "robot", None)
         if robot is not None or not isinstance(request, AbortTask) or request.aborts is None:
             return robot
-        if (robot := self._robots.doing(request.aborts)) is not None:
+        # No Abort waits for a database that is away where its robot is known without.
+        robot = self._robots.doing(request.aborts) or self._own.robot_of(request.aborts)
+        if robot is not None:
             return robot
-        # Its owner can report that it has ended, and no Abort waits for a database that is away.
-        with contextlib.suppress(StoreError, TimeoutError):
+        try:
             async with asyncio.timeout(STORED_WITHIN_S):
+                # Where it has ended the owner says so.
                 found = await self._database.read(commands.find, request.aborts)
-                return None if found is None else found.robot
-        return None
+        except (StoreError, TimeoutError) as error:
+            reason = str(error) or f"the database has not answered within {STORED_WITHIN_S:g} s"
+            raise StoreError(
+                f"which robot has command {request.aborts} cannot be looked up: {reason}. "
+                "This has aborted nothing: abort the robot by its name, or all robots"
+            ) from error
+        return None if found is None else found.robot
 
     async def _abort_all(self, request: AbortAll, operator: str) -> dict[str, Any]:
         """Abort this gateway's robots at once, and have the others abort theirs at the same time."""

@@ -47,7 +47,7 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
     requests = [NewRequest.of("r1", AbortTask(id, "r1", None, None)) for id in ids]
     await database.run(gateways.add_requests, requests, "Ada", "b")
     handlers, fleet = Handlers(), SimpleNamespace(me=Member("a", "run"), name="a")
-    relay = RequestRelay(handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database, Notes())
+    relay = RequestRelay(handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database, Notes(), Own())
     running = asyncio.create_task(relay.run())
     try:
         async with asyncio.timeout(10 * BUSY):
@@ -58,6 +58,13 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
         await asyncio.gather(running, return_exceptions=True)
         await database.close()
     assert sorted(handlers.asked) == ids
+
+
+class Own:
+    """The open commands of this gateway, of robots that do something else first."""
+
+    def robot_of(self, command):
+        return "r2" if command == "second-01" else None
 
 
 class Notes:
@@ -107,7 +114,7 @@ def known():
 
 def relay_by(robots, notes, database, *buses):
     fleet = SimpleNamespace(me=Member("b", "run"), name="b", database_time=lambda: 5000.0)
-    return RequestRelay(Handlers(), robots, fleet, Exchange("b", b"k" * 32, buses), database, notes)
+    return RequestRelay(Handlers(), robots, fleet, Exchange("b", b"k" * 32, buses), database, notes, Own())
 
 
 @pytest.mark.parametrize("asked", sorted(ABORTS))
@@ -165,6 +172,46 @@ async def test_an_abort_or_a_pause_that_nobody_answers_stays_noted_and_who_asked
         "is stored and sent by whichever gateway has the robot or gets it: look whether they stand"
     )
     assert [(one.robot, one.by) for one in notes.noted] == [("r1", "Ada")] and notes.withdrawn == []
+
+
+class Unread:
+    """A database that finds no command, or is away, or hangs."""
+
+    def __init__(self, state):
+        self.state = state
+
+    async def read(self, _work, command):
+        assert command == "target-02"
+        if self.state == "hangs":
+            await asyncio.Event().wait()
+        if self.state == "away":
+            raise StoreError("away")
+
+
+@pytest.mark.parametrize(
+    ("state", "reason"), [("away", "away"), ("hangs", "the database has not answered within 0 s")]
+)
+async def test_an_abort_of_a_command_that_cannot_be_looked_up_is_not_called_needless(
+    known, monkeypatch, state, reason
+):
+    monkeypatch.setattr(request_relay, "STORED_WITHIN_S", 0.0)
+    relay = relay_by(known, notes := Notes(), Unread(state))
+    with pytest.raises(StoreError) as caught:
+        await relay.answer(AbortTask("abort-0001", None, "target-02", None), "Ada")
+    assert str(caught.value) == (
+        f"which robot has command target-02 cannot be looked up: {reason}. This has aborted nothing: abort "
+        "the robot by its name, or all robots"
+    )
+    assert relay._handlers.asked == notes.noted == []
+    # What this gateway knows by itself needs no database.
+    await relay.answer(AbortTask("abort-0002", None, "second-01", None), "Ada")
+    assert relay._handlers.asked == ["abort-0002"]
+
+
+async def test_an_abort_of_a_command_that_there_never_was_is_answered_here(known):
+    relay = relay_by(known, Notes(), Unread("works"))
+    await relay.answer(AbortTask("abort-0001", None, "target-02", None), "Ada")
+    assert relay._handlers.asked == ["abort-0001"]
 
 
 class SlowOwner:
