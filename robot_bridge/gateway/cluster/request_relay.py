@@ -92,6 +92,8 @@ STORED_WITHIN_S = 1.0
 """seconds after which an unanswered Abort goes over the bus as well."""
 LATER = "it is stored and sent as soon as the database takes it"
 STAYS = "it stays noted, and is stored and sent by whichever gateway has the robot or gets it"
+MOST_REASONS = 3
+"""reasons that an answer names where Aborts of several robots fail."""
 MOST_AT_ONCE = 200
 FORGET_S = 3600.0
 
@@ -108,6 +110,10 @@ _PLAIN: dict[str, type[Exception]] = {
     cls.__name__: cls
     for cls in (MessageError, ForbiddenError, BusyError, DataRefusedError, StoreError, RefusedError)
 }
+
+
+Outcome = dict[str, Any] | BridgeError | MessageError
+"""The result of a request, or why there is none."""
 
 
 class UnansweredError(RefusedError):
@@ -191,8 +197,10 @@ class RequestRelay:
                 if not (isinstance(error, FencedError) or isinstance(error.__cause__, FencedError)):
                     raise
                 # Another gateway claimed it a moment ago.
-        (result,) = await self._relay([(robot, request)], operator)
-        return result
+        outcome = (await self._relay([(robot, request)], operator))[robot]
+        if not isinstance(outcome, dict):
+            raise outcome
+        return outcome
 
     async def _robot_of(self, request: DeskRequest[Any]) -> str | None:
         """Return the robot of a request, None where there is no such command; raises StoreError."""
@@ -222,16 +230,20 @@ class RequestRelay:
             (name, AbortTask(str(uuid.uuid5(uuid.NAMESPACE_OID, f"{id} {name}")), name, None, request.reason))
             for name in self._robots.commanded_elsewhere()
         ]
+        here = self._robots.commanded()
         own = asyncio.ensure_future(self._handlers.answer(AbortAll(id, request.reason), operator))
         if not aborts:
             return await own
-        others = await asyncio.gather(self._relay(aborts, operator), return_exceptions=True)
-        result = await own
-        for found in others:
-            if isinstance(found, BaseException):
-                raise found
-            result["commands"] = [*result["commands"], *found]
-        return result
+        outcomes, commands = await self._relay(aborts, operator), []
+        try:
+            commands += (await own)["commands"]
+        except (BridgeError, MessageError) as error:
+            outcomes |= dict.fromkeys(here, error)
+        commands += [found for _, found in sorted(outcomes.items()) if isinstance(found, dict)]
+        failed = {name: found for name, found in outcomes.items() if not isinstance(found, dict)}
+        if failed:
+            raise _partly_aborted([command["robot"] for command in commands], failed)
+        return {"commands": commands}
 
     async def _set_positions(self, request: SetPositions, operator: str) -> dict[str, Any]:
         """Have each gateway send its robots their targets; raises the first error if none does."""
@@ -251,32 +263,38 @@ class RequestRelay:
 
     async def _relay(
         self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
-    ) -> list[dict[str, Any]]:
-        """Return the results of requests about robots of other gateways; raises as their handlers do."""
+    ) -> dict[str, Outcome]:
+        """Return by robot what became of requests about robots of other gateways, one for each robot.
+
+        :raises StoreError, UnansweredError: when requests that stop no robot are not answered.
+        """
         # An Abort makes a robot stand for a pause, too; but a pause that waited too long is refused.
         stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
-        relaying = asyncio.ensure_future(self._ask(requests, operator))
+        answers: dict[str, str] = {}
+        relaying = asyncio.ensure_future(self._ask(requests, operator, answers))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
-        sent: list[str] = []
+        sent: set[str] = set()
         if stops and (not relaying.done() or relaying.exception() is not None):
-            self._noter.note_aborts([self._noted(robot, r, operator) for robot, r in stops if _stops(r)])
-            sent = [robot for robot, request in stops if self._send_abort(robot, request)]
+            # A robot that is answered about may be sent on by then.
+            left = [(robot, request) for robot, request in stops if robot not in answers]
+            self._noter.note_aborts([self._noted(robot, r, operator) for robot, r in left if _stops(r)])
+            sent = {robot for robot, request in left if self._send_abort(robot, request)}
+        outcomes: dict[str, Outcome] = {}
         try:
-            answers = await relaying
+            await relaying
         except (StoreError, UnansweredError) as error:
             if not stops:
                 raise
-            raise self._noted_failure(error, stops, sent, operator) from error
-        try:
-            results = [_result_in(answer) for answer in answers]
-        except (RefusedError, MessageError) as refusal:
-            if not sent:
-                raise
-            refused = MessageError if isinstance(refusal, MessageError) else RefusedError
-            raise refused(with_abort_sent(refusal, sent)) from refusal
-        # The robots stand: what the last pause has left would end what they do next.
-        self._noter.withdraw([id for robot, _ in stops if (id := self._paused.pop(robot, None))])
-        return results
+            left = [(robot, request) for robot, request in stops if robot not in answers]
+            failure = self._noted_failure(error, left, sorted(sent - answers.keys()), operator)
+            failure.__cause__ = error
+            outcomes = {robot: failure for robot, _ in left}
+        for robot, answer in answers.items():
+            outcomes[robot] = _outcome_in(answer, [robot] if robot in sent else [])
+        # Those that stand: what the last pause has left would end what they do next.
+        done = [robot for robot, _ in stops if isinstance(outcomes[robot], dict)]
+        self._noter.withdraw([id for robot in done if (id := self._paused.pop(robot, None))])
+        return outcomes
 
     def _noted_failure(
         self,
@@ -318,43 +336,50 @@ class RequestRelay:
         self._abort_here(robot, call_id)
         return self._exchange.send(STOP, AbortCall(self._exchange.gateway, robot, call_id))
 
-    async def _ask(self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str) -> list[str]:
+    async def _ask(
+        self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str, answers: dict[str, str]
+    ) -> None:
+        """Add the answers of other gateways to ``answers`` by robot, as they come.
+
+        :raises StoreError, UnansweredError: when not all have come.
+        """
         rows = [NewRequest.of(robot, request) for robot, request in requests]
         ids = await self._database.run(gateways.add_requests, rows, operator, self._membership.name)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)
         # The robots may have moved here meanwhile.
         self._asked.set()
-        return await self._collect(ids, [robot for robot, _ in requests])
+        await self._collect(dict(zip(ids, [robot for robot, _ in requests], strict=True)), answers)
 
-    async def _collect(self, ids: list[int], robots: list[str]) -> list[str]:
-        """Return the answers in the order of ``ids``; raises UnansweredError if one is missing."""
+    async def _collect(self, robots: dict[int, str], answers: dict[str, str]) -> None:
+        """Add the answers about ``robots``, which are by the ids of their requests."""
         event = asyncio.Event()
-        self._answered.update(dict.fromkeys(ids, event))
-        answers: dict[int, str] = {}
+        self._answered.update(dict.fromkeys(robots, event))
         until = asyncio.get_running_loop().time() + ANSWER_WITHIN_S
+        left = robots
         try:
-            while len(answers) < len(ids):
-                left = [id for id in ids if id not in answers]
+            while left:
                 event.clear()
-                answers.update(await self._database.run(gateways.collect_answers, left))
+                found = await self._database.run(gateways.collect_answers, list(left))
+                answers.update((left[id], answer) for id, answer in found.items())
+                left = {id: robot for id, robot in left.items() if id not in found}
                 pause = min(LOOK_S, until - asyncio.get_running_loop().time())
-                if len(answers) == len(ids):
-                    break
-                if pause <= 0:
-                    raise await self._unanswered(left, robots)
-                await wait_at_most(event, pause)
+                if left and pause <= 0:
+                    raise await self._unanswered(left)
+                if left:
+                    await wait_at_most(event, pause)
         finally:
-            for id in ids:
+            for id in robots:
                 self._answered.pop(id, None)
-        return [answers[id] for id in ids]
 
-    async def _unanswered(self, ids: list[int], robots: list[str]) -> UnansweredError:
-        back = await self._database.run(gateways.withdraw_requests, ids)
+    async def _unanswered(self, left: dict[int, str]) -> UnansweredError:
+        back = await self._database.run(gateways.withdraw_requests, list(left))
         names = listed_names(
-            sorted({f"{self._robots.gateway_of(robot) or 'none'} ({robot})" for robot in robots})
+            sorted({f"{self._robots.gateway_of(robot) or 'none'} ({robot})" for robot in left.values()})
         )
-        what = "was not done" if len(back) == len(ids) else "may have been done: look at the robot's commands"
+        what = (
+            "was not done" if len(back) == len(left) else "may have been done: look at the robot's commands"
+        )
         silent = f"gateway {names} has not answered within {ANSWER_WITHIN_S:g} s"
         return UnansweredError(silent, f"what was asked {what}")
 
@@ -465,6 +490,26 @@ def _joined(
     return result
 
 
+def _partly_aborted(
+    done: Sequence[str], failed: dict[str, BridgeError | MessageError]
+) -> BridgeError | MessageError:
+    """Return what says of which robots Aborts are stored, and why not of those that ``failed``.
+
+    An error, where SetPositions has ``refused`` in its result: an operator whose desk does not read that
+    would take the Abort of some robots for one of all.
+    """
+    robots: dict[str, list[str]] = {}
+    for robot, error in sorted(failed.items()):
+        robots.setdefault(str(error), []).append(robot)
+    if not done and len(robots) == 1:
+        return next(iter(failed.values()))
+    parts = [f"not for {listed_names(names)}: {text}" for text, names in robots.items()]
+    if more := [name for names in list(robots.values())[MOST_REASONS:] for name in names]:
+        parts[MOST_REASONS:] = [f"and not for {listed_names(more)}"]
+    kind = StoreError if any(isinstance(error, StoreError) for error in failed.values()) else RefusedError
+    return kind("; ".join([f"Aborts are stored for {listed_names(sorted(done))}", *parts]))
+
+
 def _stops(request: DeskRequest[Any]) -> bool:
     return isinstance(request, AbortTask) or (isinstance(request, Send) and request.op == Abort.__name__)
 
@@ -492,6 +537,19 @@ def _error_out(error: Exception) -> dict[str, Any]:
     elif isinstance(error, OverridableError):
         out |= {"kind": OverridableError.__name__, "found": error.found}
     return out
+
+
+def _outcome_in(answer: str, sent: Sequence[str]) -> Outcome:
+    """Return the result or the error in an answer about robots that were ``sent`` an Abort meanwhile."""
+    try:
+        return _result_in(answer)
+    except (RefusedError, MessageError) as refusal:
+        if not sent:
+            return refusal
+        refused = MessageError if isinstance(refusal, MessageError) else RefusedError
+        return refused(with_abort_sent(refusal, sent))
+    except StoreError as error:
+        return error
 
 
 def _result_in(answer: str) -> dict[str, Any]:

@@ -11,11 +11,11 @@ from sqlalchemy import text
 
 from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.base import DESK_REQUESTS, Role
-from robot_bridge.core.messages.commands import AbortTask, Send
+from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send
 from robot_bridge.core.messages.queues import PauseRobot, TakeOver
 from robot_bridge.gateway.cluster import request_relay
 from robot_bridge.gateway.cluster.bus import STOP
-from robot_bridge.gateway.cluster.messages import Exchange, NotedAbort
+from robot_bridge.gateway.cluster.messages import Codec, Exchange, NotedAbort
 from robot_bridge.gateway.cluster.request_relay import RequestRelay
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.database import Database, read_address
@@ -248,6 +248,106 @@ async def test_who_is_refused_there_hears_once_that_the_robot_was_sent_an_abort(
     with pytest.raises(RefusedError) as caught:
         await relay.answer(ABORTS["abort"], "Ada")
     assert str(caught.value) == f"ended. {SENT}"
+
+
+class Parts:
+    """The bus to gateways a and c, and the database: a answers at once there, c once it has an Abort."""
+
+    name, connected = "parts", True
+
+    def __init__(self, answers, late=()):
+        self.answers, self.late, self.aborted, self.robots = answers, dict(late), [], {}
+
+    def publish(self, subject, content):
+        if subject == STOP:
+            self.aborted.append(Codec(b"k" * 32).decode(content).robot)
+        return True
+
+    async def run(self, work, *arguments):
+        if work is gateways.add_requests:
+            self.robots = dict(enumerate([request.robot for request in arguments[0]], 1))
+            return list(self.robots)
+        if work is gateways.withdraw_requests:
+            return set(arguments[0])
+        answers = {**self.answers, **(self.late if self.aborted else {})}
+        # Who has them has deleted them.
+        self.answers, self.late = {}, ({} if self.aborted else self.late)
+        return {id: answers[robot] for id in arguments[0] if (robot := self.robots[id]) in answers}
+
+
+def answered(robot):
+    return f'{{"result": {{"command": "abort-of-{robot}", "robot": "{robot}"}}}}'
+
+
+REFUSED = '{"error": {"kind": "RefusedError", "text": "robot \'r2\' is not known"}}'
+
+
+@pytest.fixture
+def fleet(monkeypatch):
+    """Robot r0 here, r1 and r2 at gateway a, r3 at c; they wait for nothing."""
+    robots = Robots()
+    for robot, gateway in (("r0", None), ("r1", "a"), ("r2", "a"), ("r3", "c")):
+        robots.ready(robot, 1, "websocket", 0.0)
+        if gateway is not None:
+            robots.let_go(robot, gateway)
+    monkeypatch.setattr(request_relay, "STORED_WITHIN_S", 0.0)
+    monkeypatch.setattr(request_relay, "LOOK_S", 0.001)
+    return robots
+
+
+class OwnAborts(Handlers):
+    """Aborts robot r0, or says that the database is away."""
+
+    def __init__(self, works=True):
+        super().__init__()
+        self.works = works
+
+    async def answer(self, request, operator):
+        if not self.works:
+            raise StoreError("away. The Abort is not stored; it was sent to r0 all the same")
+        await super().answer(request, operator)
+        return {"commands": [{"command": "abort-of-r0", "robot": "r0"}]}
+
+
+@pytest.mark.parametrize("works", [True, False])
+async def test_of_aborts_of_all_robots_each_is_answered_by_itself(fleet, monkeypatch, works):
+    monkeypatch.setattr(request_relay, "ANSWER_WITHIN_S", 0.0)
+    parts = Parts({"r1": answered("r1"), "r2": REFUSED})
+    relay = relay_by(fleet, notes := Notes(), parts, parts)
+    relay._handlers = OwnAborts(works)
+    with pytest.raises(RefusedError if works else StoreError) as caught:
+        await relay.answer(AbortAll("abort-all-1"), "Ada")
+    here = (
+        "r0, r1" if works else "r1; not for r0: away. The Abort is not stored; it was sent to r0 all the same"
+    )
+    assert str(caught.value) == (
+        f"Aborts are stored for {here}; not for r2: robot 'r2' is not known; not for r3: gateway c (r3) has "
+        "not answered within 0 s. The Abort may not be stored; it was sent over the bus to the gateways of "
+        "r3; it stays noted, and is stored and sent by whichever gateway has the robot or gets it: look "
+        "whether they stand"
+    )
+    # What is stored, or refused, is not sent once more: the robot may be sent on by then.
+    assert (parts.aborted, [one.robot for one in notes.noted]) == (["r3"], ["r3"])
+
+
+async def test_of_aborts_of_all_robots_those_alone_that_are_not_stored_in_time_are_sent_twice(fleet):
+    parts = Parts({"r1": answered("r1"), "r2": answered("r2")}, {"r3": answered("r3")})
+    relay = relay_by(fleet, notes := Notes(), parts, parts)
+    relay._handlers = OwnAborts()
+    found = await relay.answer(AbortAll("abort-all-1"), "Ada")
+    assert [command["robot"] for command in found["commands"]] == ["r0", "r1", "r2", "r3"]
+    assert (parts.aborted, [one.robot for one in notes.noted]) == (["r3"], ["r3"])
+
+
+def test_reasons_why_robots_are_not_aborted_are_few():
+    failed = {f"r{n}": RefusedError(f"r{n} is gone") for n in range(6)}
+    assert str(request_relay._partly_aborted([], failed)) == (
+        "Aborts are stored for none; not for r0: r0 is gone; not for r1: r1 is gone; not for r2: r2 is gone; "
+        "and not for r3, r4, r5"
+    )
+    # One reason for all needs no list.
+    away = StoreError("away")
+    assert request_relay._partly_aborted([], {"r0": away, "r1": away}) is away
 
 
 def test_what_is_asked_of_one_robot_is_done_by_the_gateway_that_has_it():
