@@ -299,6 +299,19 @@ def with_abort_sent(error: Exception, robots: Sequence[str]) -> str:
     return f"{error}. {sent}: look where it stands, then send it on, or abort it"
 
 
+STORED_LATER = "it is stored and sent as soon as the database takes it"
+"""What becomes of an Abort that the database does not take."""
+
+
+def unstored_abort(recipients: str, *, is_pause: bool, may_be_stored: bool = False) -> str:
+    """Return that an Abort is not stored, or the pause that has become one, and who was sent it all the same.
+
+    ``recipients`` follows "was", such as "sent to no robot".
+    """
+    what, abort = ("The pause", "an Abort") if is_pause else ("The Abort", "it")
+    return f"{what} {'may not be' if may_be_stored else 'is not'} stored; {abort} was {recipients}"
+
+
 # --- How to install an optional Python package: the remedy in errors about a missing one
 
 _DEBIAN = {

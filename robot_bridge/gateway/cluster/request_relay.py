@@ -16,6 +16,7 @@ from typing import Any, Protocol
 import msgspec
 
 from ...core.errors import (
+    STORED_LATER,
     BridgeError,
     BusyError,
     DataRefusedError,
@@ -25,6 +26,7 @@ from ...core.errors import (
     RefusedError,
     StoreError,
     listed_names,
+    unstored_abort,
     with_abort_sent,
 )
 from ...core.json_decoder import decode_json
@@ -90,7 +92,6 @@ TOO_OLD_S = 20.0
 """seconds after which no request that moves a robot is begun: nobody expects it any more."""
 STORED_WITHIN_S = 1.0
 """seconds after which an unanswered Abort goes over the bus as well."""
-LATER = "it is stored and sent as soon as the database takes it"
 STAYS = "it stays noted, and is stored and sent by whichever gateway has the robot or gets it"
 MOST_REASONS = 3
 """reasons that an answer names where Aborts of several robots fail."""
@@ -310,11 +311,11 @@ class RequestRelay:
         self._noter.withdraw([id for abort in paused if (id := self._paused.pop(abort.robot, None))])
         self._paused.update((abort.robot, abort.command) for abort in paused)
         to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
-        what = "The pause is not stored; an Abort" if paused else "The Abort is not stored; it"
         if isinstance(error, UnansweredError):
-            what = "The pause may not be stored; an Abort" if paused else "The Abort may not be stored; it"
-            return RefusedError(f"{error.silent}. {what} was {to}; {STAYS}: look whether they stand")
-        return StoreError(f"{error}. {what} was {to}; {LATER}: look whether they stand")
+            what = unstored_abort(to, is_pause=bool(paused), may_be_stored=True)
+            return RefusedError(f"{error.silent}. {what}; {STAYS}: look whether they stand")
+        what = unstored_abort(to, is_pause=bool(paused))
+        return StoreError(f"{error}. {what}; {STORED_LATER}: look whether they stand")
 
     def _noted(self, robot: str, request: DeskRequest[Any], operator: str) -> NotedAbort:
         reason: str | None = getattr(request, "reason", None)

@@ -13,11 +13,13 @@ from typing import Any, TypeVar
 from sqlalchemy import Connection
 
 from ...core.errors import (
+    STORED_LATER,
     DataRefusedError,
     RefusedError,
     StoreError,
     UncertainError,
     listed_names,
+    unstored_abort,
     with_abort_sent,
 )
 from ...core.logs import log_and_continue
@@ -52,7 +54,6 @@ STORED_WITHIN = 1.0
 alone for robots that read the database: its command needs tables that somebody may have locked."""
 NOTED_WITHIN = 0.5
 """seconds that an answer waits for the note of what is not stored."""
-STORED_LATER = "it is stored and sent as soon as the database takes it"
 
 
 class CommandRequests:
@@ -261,6 +262,6 @@ async def _wait_for_note(writing: Future[bool] | None) -> None:
 
 
 def _sent_in_words(sent: Sequence[str], *, is_pause: bool, is_lasting: bool) -> str:
-    what, abort = ("The pause", "an Abort") if is_pause else ("The Abort", "it")
     recipients = f"sent to {listed_names(sent)} all the same" if sent else "sent to no robot"
-    return f"{what} is not stored; {abort} was {recipients}{f'; {STORED_LATER}' if is_lasting else ''}"
+    later = f"; {STORED_LATER}" if is_lasting else ""
+    return f"{unstored_abort(recipients, is_pause=is_pause)}{later}"

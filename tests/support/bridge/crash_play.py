@@ -16,13 +16,12 @@ from typing import NamedTuple
 import pytest
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
+from robot_bridge.core.errors import STORED_LATER, OutdatedError, RefusedError, StoreError
 from robot_bridge.core.messages.commands import AbortTask, CommandState, Send
 from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue
 from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.commands.active_command import may_become
-from robot_bridge.gateway.commands.requests import STORED_LATER
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.site.site_maps import SiteMaps
