@@ -82,7 +82,8 @@ class CommandOrder:
     With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of`` unless that
     is and its end was not requested; NOTHING stands for an idle robot. ``task`` is the task of the robot's
     queue that it is for; an order outside the queue pauses the queue. One that is ``fenced`` is refused where
-    it leads into a keepout of the site.
+    it leads into a keepout of the site, one with ``asked`` where its robot was stopped after that count of
+    stops.
     """
 
     command: str
@@ -95,11 +96,17 @@ class CommandOrder:
     task: str | None = None
     instead_of: str | None = None
     fenced: bool = False
+    asked: int | None = None
 
     @property
     def is_emergency(self) -> bool:
         """Whether it is the Abort of an emergency stop."""
         return isinstance(self.message, Abort) and self.message.emergency
+
+    @property
+    def is_stop(self) -> bool:
+        """Whether it is the Abort of whatever the robot does, not of one command or task."""
+        return isinstance(self.message, Abort) and self.aborts is None and self.task is None
 
 
 @dataclass

@@ -82,6 +82,10 @@ class CommandRequests:
     @handles(Send)
     async def send(self, send: Send, operator: str) -> CommandReport:
         """Issue one command; a repeated request returns its state, even if it would be refused by now."""
+        with self._commands.drafting.stops.asking(send.command) as asked:
+            return await self._send(send, operator, asked)
+
+    async def _send(self, send: Send, operator: str, asked: int) -> CommandReport:
         try:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
@@ -89,14 +93,14 @@ class CommandRequests:
         remarks = [f"override: {send.override}" if send.override else None, send.reason]
         reason = "; ".join(text for text in remarks if text) or None
         fenced = send.override is None
-        order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
+        order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced, asked=asked)
         issue = self._issue_aborts if isinstance(order.message, Abort) else self._commands.issue
         return (await issue([order]))[0]
 
     @handles(SetPositions)
     async def set_positions(self, request: SetPositions, operator: str) -> Commands:
         """Issue a target for each robot, all of them or none."""
-        positions = request.positions
+        positions, asked = request.positions, self._commands.drafting.stops.present
         request.check_named_once()
         for position in positions:
             self._robots.check_known(position.robot)
@@ -104,7 +108,7 @@ class CommandRequests:
         for position in await targets_in_site_frame(self._site, positions):
             target = {name: value for name, value in to_json(position).items() if name != "robot"}
             order = await self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator)
-            orders.append(replace(order, fenced=True))
+            orders.append(replace(order, fenced=True, asked=asked))
         return Commands(await self._commands.issue(orders))
 
     @handles(AbortTask)

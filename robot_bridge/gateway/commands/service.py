@@ -116,15 +116,26 @@ class CommandService(CommandReader):
             self._unstored.drop(robot)
             self._late = {late for late in self._late if late[0] != robot}
 
-    async def issue(
+    def issue(
         self, orders: list[CommandOrder], also: persistence.Also | None = None
-    ) -> list[CommandReport]:
+    ) -> Coroutine[Any, Any, list[CommandReport]]:
         """Store new commands with their messages, and the writes ``also``, all or none; return the reports.
 
         A command with a known id is returned in its present state and changes nothing. An Abort that cannot
-        be stored is kept, and stored before any other message to its robot.
+        be stored is kept, and stored before any other message to its robot. One of whatever the robot does
+        makes void the motions that are being checked when this is called.
         """
-        return await to_its_end(self._issue(orders, also))
+        self.count_stop(order.robot for order in orders if order.is_stop)
+        return to_its_end(self._issue(orders, also))
+
+    def count_stop(self, robots: Iterable[str]) -> None:
+        """Have no motion of ``robots`` stored that was asked by now, and is being checked."""
+        self.drafting.stops.add(robots)
+
+    async def await_stored(self, robot: str) -> None:
+        """Wait until the orders of a robot that are being stored are stored; raises StoreError."""
+        async with self._held.of([robot]):
+            return
 
     def keep_aborts(self, aborts: Iterable[CommandOrder]) -> Future[bool] | None:
         """Store Aborts before any other message of their robots; return the writing of their notes."""
@@ -141,9 +152,9 @@ class CommandService(CommandReader):
 
     def keep_left(self, left: Iterable[active_command.KeptAbort]) -> None:
         """Store those Aborts that another gateway left of robots of this one, before any other message."""
-        self._unstored.keep_left(
-            one for one in left if one.order.robot in self._robots and self._fence.owns(one.order.robot)
-        )
+        mine = [o for o in left if o.order.robot in self._robots and self._fence.owns(o.order.robot)]
+        self.count_stop(one.order.robot for one in mine if one.order.is_stop)
+        self._unstored.keep_left(mine)
 
     def keep_left_for(self, robots: Iterable[str]) -> None:
         """Store the Aborts left for ``robots``, which this gateway has, before any other message."""
@@ -286,6 +297,7 @@ class CommandService(CommandReader):
     async def give_up(self, robot: str, reason: str) -> None:
         """End every command of a robot, which will not carry them out."""
         self._unstored.end([robot])
+        self.drafting.stops.forget(robot)
         await to_its_end(self._give_up(robot, reason))
 
     async def resolve_uncertain_commit(self) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Iterator, KeysView, Mapping, Sequence
+from collections.abc import Iterable, Iterator, KeysView, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from ...core.errors import RefusedError
@@ -246,6 +247,46 @@ class WaitingRobots(dict[str, HoldRow]):
         return None if row is None or row.task != task else row.other
 
 
+class StopCount:
+    """Counts Aborts and pauses, to find the motions that one overtakes while they are checked; no I/O.
+
+    An order that was asked before a stop of its robot must not be stored behind that stop.
+    """
+
+    def __init__(self) -> None:
+        self.present = 0
+        self._newest: dict[str, int] = {}
+        self._asked: dict[str, int] = {}
+
+    def add(self, robots: Iterable[str]) -> None:
+        """Count a stop of ``robots``."""
+        self.present += 1
+        self._newest.update(dict.fromkeys(robots, self.present))
+
+    def forget(self, robot: str) -> None:
+        """Forget the stops of a robot that is removed."""
+        self._newest.pop(robot, None)
+
+    @contextlib.contextmanager
+    def asking(self, command: str) -> Iterator[int]:
+        """Yield the count when ``command`` was asked; for a repetition meanwhile that of the first time."""
+        is_first = command not in self._asked
+        try:
+            yield self._asked.setdefault(command, self.present)
+        finally:
+            if is_first:
+                del self._asked[command]
+
+    def check(self, order: CommandOrder) -> None:
+        """Raise RefusedError for a motion whose robot was stopped after it was asked."""
+        is_motion = isinstance(order.message, (SetPosEnd, SetPath))
+        if is_motion and order.asked is not None and order.asked < self._newest.get(order.robot, 0):
+            raise RefusedError(
+                f"robot {order.robot!r}: an Abort or a pause came while this was checked; ask again if it is "
+                "still wanted"
+            )
+
+
 class CommandValidator(CommandReader):
     """Checks orders against the rules and the robots' commands, and finds the commands that they end."""
 
@@ -256,6 +297,7 @@ class CommandValidator(CommandReader):
         self._robots = robots
         self._rules = rules
         self._waiting = waiting
+        self.stops = StopCount()
 
     async def prepare(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
         """Do the slow checks of orders; return for each its refusal, None where it may be sent."""
@@ -268,6 +310,7 @@ class CommandValidator(CommandReader):
         """Return the draft of an order, refused by ``refusal`` or by the present state."""
         try:
             self._rules.check(order.message)
+            self.stops.check(order)
             self._check_ability(order)
             self._check_task(order)
         except RefusedError as error:

@@ -26,6 +26,7 @@ from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.commands.persistence import insert_commands
 from robot_bridge.gateway.queues.task_life import STOPS_FIRST
 from tests.support.bridge.queue_line import LANE, PLACES, placed, task
+from tests.support.patience import until
 
 LAP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 60.0), (20.0, 40.0)]
 
@@ -310,10 +311,28 @@ async def test_after_an_emergency_stop_it_goes_on_only_on_purpose(line):
     assert (60.0, 40.0) not in (await line.sent())[1:]
 
 
-async def test_a_command_that_comes_in_between_is_stopped_and_kept(line):
-    await line.yard.send("x", x=60.0, y=40.0)
-    await line.yard.acknowledge_all()
-    await asyncio.gather(line.yard.send("y", x=70.0, y=40.0), pause(line))
+@pytest.mark.parametrize("busy", [True, False], ids=["busy", "idle"])
+async def test_a_command_that_is_being_stored_when_its_robot_is_paused_is_stopped_and_kept(
+    line, monkeypatch, busy
+):
+    if busy:
+        await line.yard.send("x", x=60.0, y=40.0)
+        await line.yard.acknowledge_all()
+    run, begun, released = line.yard.database.run, asyncio.Event(), asyncio.Event()
+
+    async def run_late(work, *arguments):
+        if work is insert_commands and not begun.is_set():
+            begun.set()
+            await released.wait()
+        return await run(work, *arguments)
+
+    monkeypatch.setattr(line.yard.database, "run", run_late)
+    sending = asyncio.create_task(line.yard.send("y", x=70.0, y=40.0))
+    await begun.wait()
+    pausing = asyncio.create_task(pause(line))
+    await until(lambda: line.yard.fleet._commands.drafting.stops.present)
+    released.set()
+    await asyncio.gather(sending, pausing)
     await line.reach(35.0, 40.0)
     assert [one.x for one in (await line.report()).tasks] == [70.0]
     assert (await line.sent()).count("Abort") == 1
