@@ -20,7 +20,7 @@ from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
-from ..monitoring import until_tick
+from ..monitoring import until_tick, wait_at_most
 from ..site.places import crossing
 from ..storage.database import Database
 from ..storage.repositories import commands as stored_commands
@@ -236,6 +236,7 @@ class QueueRunner:
         self._database = context.database
         self._clock = context.clock
         self._due: set[str] = set()
+        self._advancing: set[str] = set()
         self._event = asyncio.Event()
         self._sending: set[str] = set()
         self._last_states: dict[str, RobotState] = {}
@@ -246,13 +247,16 @@ class QueueRunner:
 
     async def run(self) -> None:
         """Run the queues until cancelled."""
-        while True:
-            try:
-                async with asyncio.timeout(until_tick(LOOK_INTERVAL)):
-                    await self._event.wait()
-            except TimeoutError:
-                self.schedule_all()
-            await self.advance()
+        loop = asyncio.get_running_loop()
+        look_at = loop.time() + until_tick(LOOK_INTERVAL)
+        async with asyncio.TaskGroup() as group:
+            while True:
+                await wait_at_most(self._event, look_at - loop.time())
+                # Not only when nothing comes: in a busy fleet something always does.
+                if loop.time() >= look_at:
+                    self.schedule_all()
+                    look_at = loop.time() + until_tick(LOOK_INTERVAL)
+                self._begin(group)
 
     def schedule(self, robot: str) -> None:
         """Schedule a check of a robot's queue."""
@@ -290,10 +294,8 @@ class QueueRunner:
 
     async def advance(self) -> None:
         """Process the scheduled queues: settle ended tasks, send the next ones."""
-        self._event.clear()
-        due, self._due = self._due, set()
-        # A robot that was removed still has a queue, in case it comes back.
-        await asyncio.gather(*(self._advance(robot) for robot in sorted(due) if robot in self._robots))
+        async with asyncio.TaskGroup() as group:
+            self._begin(group)
 
     async def redirect(
         self, robot: str, path: SetPath, operator: str, reason: str | None = None
@@ -346,6 +348,22 @@ class QueueRunner:
         return current
 
     # --------------------------------------------------------------------------------------------------
+
+    def _begin(self, group: asyncio.TaskGroup) -> None:
+        """Begin to process each scheduled queue, or leave it scheduled while it is being processed."""
+        self._event.clear()
+        begun = self._due - self._advancing
+        self._due -= begun
+        # A robot that was removed still has a queue, in case it comes back.
+        for robot in sorted(robot for robot in begun if robot in self._robots):
+            self._advancing.add(robot)
+            # Of its own: while a long way of one robot is planned, the others are sent on.
+            group.create_task(self._advance(robot)).add_done_callback(partial(self._end, robot))
+
+    def _end(self, robot: str, _task: asyncio.Task[None]) -> None:
+        self._advancing.discard(robot)
+        if robot in self._due:
+            self._event.set()
 
     async def _advance(self, robot: str) -> None:
         try:
