@@ -314,9 +314,23 @@ class FleetController(QObject):
         """Request that ``robot`` give way to ``other``."""
         self._try(lambda: self.roads.resolve(robot, other))
 
-    def pause_robot(self, robot: str) -> None:
-        """Request that ``robot`` stand and keep its task; like all that stops robots, never refused here."""
-        self._try(lambda: self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot)))
+    def pause_robots(self, robots: Iterable[str]) -> dict[str, str]:
+        """Request that ``robots`` stand and keep their tasks, and send no draft still being checked.
+
+        Like all that stops robots, never refused here. Returns the keys of the requests sent, and the robot
+        of each.
+        """
+        asked = {}
+        for robot in robots:
+            topic = messages.queue_state_topic(robot, self.state.queues.get(robot))
+            try:
+                key = self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot), topic)
+            except FleetError as error:
+                self.report_failure(str(error), *error.topics)
+            else:
+                asked[key] = robot
+        self.sending.withdraw()
+        return asked
 
     def propose_route(self, robot: str, points: list[Point]) -> None:
         """Put a route for ``robot`` on the map, to be checked and sent like any other."""

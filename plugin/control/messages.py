@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import QAbstractButton, QBoxLayout, QHBoxLayout, QLabel
 from ...robot_bridge.core.messages.administration import Suspension, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState
 from ...robot_bridge.core.messages.links import LinkReport, Links
-from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.queues import QueueReport, TaskState
 from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import is_pending
@@ -93,6 +93,11 @@ class QueueStand(NamedTuple):
 def queue_topic(stand: QueueStand) -> Topic:
     """Return the topic of a queue: it ends when its state changes, or its task is no longer pending."""
     return Topic("queue", stand)
+
+
+def queue_state_topic(robot: str, queue: QueueReport | None) -> Topic:
+    """Return the topic of a robot's queue, None without one: it ends when its state changes."""
+    return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
 
 
 def observation_topic(number: int) -> Topic:

@@ -344,7 +344,7 @@ class ConflictPanel(QWidget):
     def _stop(self, which: int) -> None:
         chosen = self.chosen
         if chosen is not None:
-            self._desk.pause_robot(_pair_of(chosen)[which])
+            self._desk.pause_robots([_pair_of(chosen)[which]])
 
 
 def _pair_of(conflict: ConflictReport) -> Pair:

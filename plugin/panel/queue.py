@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from qgis.core import QgsPointXY
@@ -25,7 +25,6 @@ from ...robot_bridge.core.messages.queues import (
     MakeCurrent,
     MoveTask,
     PauseQueue,
-    PauseRobot,
     QueueReport,
     QueueState,
     QueueTask,
@@ -35,7 +34,7 @@ from ...robot_bridge.core.messages.queues import (
     TaskState,
 )
 from ..control.fleet_controller import FleetController
-from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
+from ..control.messages import QueueStand, Topic, draft_topic, queue_state_topic, queue_topic
 from ..control.pending_command import PendingCommand
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.state_words import (
@@ -51,7 +50,7 @@ from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
 from ..ui.tables import RowModel, ZoomMenu, shrink_view
 
-QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
+QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
 
 CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
 PERHAPS_DONE = tr(
@@ -62,7 +61,8 @@ PERHAPS_DONE = tr(
 class QueueEdits(QObject):
     """Requests changes at the revision shown, so that no other operator's change is overwritten unseen.
 
-    Each method returns the request's key, None when it could not be sent: then the desk has reported why.
+    Each method for one queue returns the request's key, None when it could not be sent: then the desk has
+    reported why.
     """
 
     changed = pyqtSignal()
@@ -120,9 +120,10 @@ class QueueEdits(QObject):
         words = tr("Pausing the queue of {robot}", robot=robot)
         return self._change(PauseQueue(robot), words, self._state(robot))
 
-    def pause_robot(self, robot: str) -> str | None:
-        """Make a robot stand, and keep its task."""
-        return self._change(PauseRobot(robot), tr("Pause of {robot}", robot=robot), self._state(robot))
+    def pause_robots(self, robots: Iterable[str]) -> None:
+        """Make robots stand, and keep their tasks."""
+        for key, robot in self._desk.pause_robots(robots).items():
+            self._record(key, robot)
 
     def go_on(self, queue: QueueReport) -> str | None:
         """Continue a queue at its head, which is named in the message."""
@@ -140,8 +141,7 @@ class QueueEdits(QObject):
         return self._desk.state.queues.revision(robot)
 
     def _state(self, robot: str) -> Topic:
-        queue = self._desk.state.queues.get(robot)
-        return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
+        return queue_state_topic(robot, self._desk.state.queues.get(robot))
 
     def _waiting(self, robot: str, task: str) -> Topic:
         return queue_topic(QueueStand(robot, task=task))
@@ -155,10 +155,13 @@ class QueueEdits(QObject):
             about = () if draft is None else (draft_topic(draft.place),)
             self._desk.report_failure(str(error), *error.topics, *about)
             return None
-        self._pending[key] = request.robot
-        self._conflicts.pop(request.robot, None)
-        self.changed.emit()
+        self._record(key, request.robot)
         return key
+
+    def _record(self, key: str, robot: str) -> None:
+        self._pending[key] = robot
+        self._conflicts.pop(robot, None)
+        self.changed.emit()
 
     def _answered(self, answer: RequestResult) -> None:
         robot = self._pending.pop(answer.order.key, None)
@@ -198,9 +201,7 @@ class PauseActions(QObject):
             self._desk.warning.emit(
                 tr("No robot is selected, so none was paused. Select it in the table or on the map.")
             )
-        for robot in self._desk.selection.robots:
-            self._edits.pause_robot(robot)
-        self._desk.sending.withdraw()
+        self._edits.pause_robots(self._desk.selection.robots)
 
     def _continue(self) -> None:
         for queue in self._paused():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from dataclasses import replace
 
 import pytest
@@ -215,6 +216,25 @@ def test_who_stops_robots_wants_nothing_sent_any_more(slow, layer_of, how):
     assert "SetPosEnd" not in {sent["op"] for sent in slow.gateway.requests_of("send")}
     assert slow.points is not None
     assert slow.complained("was not sent: robots were told to stop")
+
+
+def test_stop_in_the_list_of_conflicts_keeps_it_back_too(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    window, gateway = slow.window, slow.gateway
+    window.dock.tabs.setCurrentWidget(window.dock.conflict_panel)
+    at = {"begins": time.time() + 20.0, "nearest_at": time.time() + 20.0, "x": 50.0, "y": 40.0}
+    meeting = {"robot": "r1", "other": "r2", "kind": "head-on", "metres": 0.4, **at}
+    gateway.tell("conflicts", {"t": time.time(), "conflicts": [meeting], "waiting": []})
+    slow.wait(lambda: window.dock.findChild(QToolButton, "fleet_stop_r1"), what="the conflict")
+    slow.take("cone").click((20, 20))
+    window.desk.sending.send()
+    assert window.desk.checks.has_order
+    window.dock.findChild(QToolButton, "fleet_stop_r1").click()
+    assert slow.complained("was not sent: robots were told to stop")
+    settle(slow)
+    slow.wait(lambda: gateway.requests_of("pause_robot"), what="the pause")
+    assert slow.points is not None
+    assert slow.nothing_sent()
 
 
 def test_a_draft_for_the_queue_waits_for_its_check_too(slow, layer_of):

@@ -101,8 +101,28 @@ def test_who_may_not_is_told_by_the_gateway(driving, gateway, iface, wait):
     gateway.answers["pause_robot"] = lambda params: {"error": {"code": FORBIDDEN, "message": refusal}}
     driving.desk.selection.select("r1")
     driving.actions.pause.trigger()
-    wait(lambda: any(f"Pause of r1: {refusal}" in text for text in iface.texts()), what="the refusal")
+    wait(lambda: is_told(iface, refusal), what="the refusal")
     assert not is_paused(gateway, "r1")
+
+
+def is_told(iface, refusal):
+    return any(f"Pause of r1: {refusal}" in text for text in iface.texts())
+
+
+def test_its_refusal_goes_when_the_queue_is_paused_whoever_asked(driving, gateway, iface, wait):
+    halt = gateway.answers["pause_robot"]
+    gateway.answers["pause_robot"] = lambda params: {"error": {"code": FORBIDDEN, "message": "not you"}}
+    driving.desk.pause_robots(["r1"])
+    wait(lambda: is_told(iface, "not you"), what="the refusal")
+    gateway.tell("queue", halt({"robot": "r1"})["result"])
+    wait(lambda: not is_told(iface, "not you"), what="the end of the refusal")
+
+
+def test_changes_of_the_queue_wait_for_the_answer(driving, gateway):
+    gateway.mute.add("pause_robot")
+    driving.desk.selection.select("r1")
+    driving.actions.pause.trigger()
+    assert driving.queue_edits.awaits_answer("r1")
 
 
 def test_without_a_link_it_says_that_nothing_was_sent(plugin, iface):
