@@ -57,6 +57,8 @@ PLAN_REQUEST = Topic("plan", "asked")
 """A request about cone plans; ends with the next one."""
 PLAN_SENT = Topic("plan", "sent")
 """The gateway's answer about a cone plan; ends with the next request about one, or when none is shown."""
+UNPLACED = Topic("unplaced")
+"""The site cannot be shown on the map."""
 REPLAY = Topic("replay")
 """Data loaded for replay; ends when other data is loaded."""
 

@@ -10,6 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ..control.fleet_controller import FleetController
+from ..control.messages import UNPLACED, Level
 from ..gateway_client.robot_states import RemovedRobots
 from ..gateway_client.state_words import part_in_words
 from ..layers.live_layers import ProjectWatch
@@ -48,6 +49,8 @@ class LiveView(QObject):
         self._last_frame = self._took = 0.0
         self._placement: SiteToMapTransform | None = None
         """The desk's transform, None when it must be fetched again, which copies the canvas's settings."""
+        self._is_unplaced = False
+        """Whether the operator knows that the map cannot show the site."""
         self._placer = SceneTransformer()
         self._plans = TaskPaths()
         self._trails = Trails()
@@ -109,12 +112,25 @@ class LiveView(QObject):
             if self._placement is None:
                 self._placement = self._desk.site_to_canvas.transform()
             self.overlay.show_scene(self._placer.placed(self._scene(), self._placement))
+            self._set_placed()
         except MapTransformError as error:
             self.overlay.show_scene(None)
-            self._desk.warning.emit(str(error))
+            self._report_unplaced(error)
         self._last_frame = time.perf_counter()
         self._took = self._last_frame - began
         self.shown = self._desk.state.robots.generation, self._desk.state.robots.revision
+
+    def _report_unplaced(self, error: MapTransformError) -> None:
+        """Report why the map cannot show the site, once and not with each frame."""
+        if not self._is_unplaced:
+            self._is_unplaced = True
+            self._desk.messages.post(str(error), Level.ERROR, UNPLACED)
+
+    def _set_placed(self) -> None:
+        """Withdraw the report that the map cannot show the site."""
+        if self._is_unplaced:
+            self._is_unplaced = False
+            self._desk.messages.end(UNPLACED)
 
     def draw_by_layer(self, on: bool) -> None:
         """Let the style of the robot layer draw robots in place of arrows, where the layer is on the map."""
@@ -211,8 +227,7 @@ class LiveView(QObject):
             self.overlay.show_scene(None)
             self.layer.clear()
             self._trails.clear()
-        self._placement = None
-        self._frame.start()
+        self._way_changed()
 
     def _robots_removed(self, gone: RemovedRobots) -> None:
         self._trails.drop(gone.rows)
@@ -220,8 +235,9 @@ class LiveView(QObject):
         self._frame.start()
 
     def _way_changed(self) -> None:
-        """Place everything again: the map's CRS, or the operations to it, have changed."""
+        """Place everything again: the site, the map's CRS, or the operations to it, have changed."""
         self._placement = None
+        self._set_placed()
         self._frame.start()
 
     def _selection_changed(self) -> None:
@@ -259,8 +275,8 @@ class LiveView(QObject):
         there = xy[np.isfinite(xy).all(axis=1)]
         try:
             places = self._desk.site_to_canvas.transform().to_map(there)
-        except MapTransformError as error:
-            self._desk.warning.emit(str(error))
+        except MapTransformError:
+            # The frame reports it.
             return
         keep_in_view(self._desk.canvas, self.overlay.screen(), places)
 

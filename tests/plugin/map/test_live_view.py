@@ -7,6 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.map.live_view import EVERY_SECOND
+from fleet_supervisor.plugin.map.overlay.scene import FollowMode
 from fleet_supervisor.plugin.ui.glyphs import TRAIL
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY
 from qgis.PyQt.QtGui import QColor
@@ -63,6 +65,35 @@ def test_robots_are_placed_anew_when_the_map_gets_another_crs(at_desk, gateway, 
         return at_desk.view.overlay.robot_at(at.x(), at.y()) == "r1"
 
     wait(is_there, what="the robot in the other CRS")
+
+
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
+
+
+def test_that_the_map_cannot_show_the_site_is_reported_once_and_until_it_can(at_desk, iface, wait):
+    desk, view = at_desk.desk, at_desk.view
+    site_crs = iface.canvas.mapSettings().destinationCrs()
+
+    def is_told():
+        return any("Choose the site's CRS as the project's" in text for text in iface.texts())
+
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem(YARD))
+    wait(is_told, what="why the map is empty")
+    desk.failed.emit("EMERGENCY STOP is NOT sent yet")
+    posted = []
+    desk.messages.posted.connect(lambda text, level: posted.append(text))
+    view.follow(FollowMode.ALL)
+    updates = []
+    desk.state.updated.connect(lambda: updates.append(1))
+    wait(lambda: len(updates) > 2 * EVERY_SECOND, 20.0, what="updates")
+    view.show_now()
+    assert posted == []
+    assert "NOT sent yet" in iface.bar.currentItem().findChild(QLabel, "fleet_notice").text()
+    iface.canvas.setDestinationCrs(site_crs)
+    wait(lambda: not is_told(), what="the end of the message")
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem(YARD))
+    wait(is_told, what="the message again")
 
 
 def test_a_new_position_is_painted_without_anything_else_happening(at_desk, gateway, iface, make_robot, wait):
