@@ -159,7 +159,6 @@ class FleetController(QObject):
         for notices in (self._suspensions, self._links, self._site_problem):
             notices.began.connect(self.failed)
             notices.over.connect(self.resolved)
-        self.preview.refused.connect(self.warning)
 
     def open_link(
         self,

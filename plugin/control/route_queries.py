@@ -72,6 +72,8 @@ class RouteQuery(QObject):
     """The answer to a clicked query: the :class:`RouteQuestion` and its RouteReport."""
     refused = pyqtSignal(str)
     """There is no route to the clicked place: the reason."""
+    dropped = pyqtSignal(object)
+    """Clicked queries will not be answered: the list of their RouteQuestions."""
 
     def __init__(
         self,
@@ -100,6 +102,7 @@ class RouteQuery(QObject):
 
     def want(self, question: RouteQuestion) -> None:
         """Request a route, now or when the query before is answered; raises NotSentError."""
+        self.watch()
         if self._waits():
             if self._next is None or not self._next.taken or question.taken:
                 self._next = question
@@ -108,9 +111,13 @@ class RouteQuery(QObject):
 
     def forget(self) -> None:
         """Show no route, and ignore answers still to come."""
+        questions = [self._pending[1]] if self._pending is not None else []
+        questions += [self._next] if self._next is not None else []
         self._pending = self._next = self.route = None
         self.why_not = ""
         self.shown.emit()
+        if clicked := [question for question in questions if question.taken]:
+            self.dropped.emit(clicked)
 
     def accept_answer(self, answer: RequestResult) -> bool:
         """Handle an answer; return false when it belongs to another request."""
@@ -146,13 +153,15 @@ class RouteQuery(QObject):
         return self._clock.steady() - requested_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
 
     def _ask_next(self) -> None:
-        following, self._next = self._next, None
-        if following is None:
+        if self._next is None or self._pending is not None:
+            # Whoever received the answer may have asked for the next leg.
             return
         try:
-            self._ask(following)
+            self._ask(self._next)
         except NotSentError:
             self.forget()
+        else:
+            self._next = None
 
     def _show(self, question: RouteQuestion, route: RouteReport | None, why_not: str) -> None:
         self.route, self.wishes, self.why_not = route, question.wishes, why_not

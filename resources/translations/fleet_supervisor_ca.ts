@@ -3560,10 +3560,13 @@
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
-            <translation>Encara no se sabia el camí fins on heu fet l'últim clic, de manera que no és a la ruta.</translation>
+            <source>The ways to the %n places clicked last were not known yet, so they are not in the route.</source>
+            <translation>
+                <numerusform>Encara no se sabia el camí fins a %n lloc on heu fet l'últim clic, de manera que no és a la ruta.</numerusform>
+                <numerusform>Encara no se sabien els camins fins als %n llocs on heu fet els últims clics, de manera que no són a la ruta.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -3594,6 +3597,14 @@
             <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} a {where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{why} (Nor are the %n places clicked after it in the route.)</source>
+            <translation>
+                <numerusform>{why} (Tampoc no és a la ruta %n lloc on heu fet clic després.)</numerusform>
+                <numerusform>{why} (Tampoc no són a la ruta els %n llocs on heu fet clic després.)</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />

@@ -3560,10 +3560,13 @@
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
-            <translation>Aún no se conocía el camino hasta donde hizo el último clic, así que no está en la ruta.</translation>
+            <source>The ways to the %n places clicked last were not known yet, so they are not in the route.</source>
+            <translation>
+                <numerusform>Aún no se conocía el camino hasta %n lugar donde hizo el último clic, así que no está en la ruta.</numerusform>
+                <numerusform>Aún no se conocían los caminos hasta los %n lugares donde hizo los últimos clics, así que no están en la ruta.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -3594,6 +3597,14 @@
             <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} en {where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{why} (Nor are the %n places clicked after it in the route.)</source>
+            <translation>
+                <numerusform>{why} (Tampoco está en la ruta %n lugar donde hizo clic después.)</numerusform>
+                <numerusform>{why} (Tampoco están en la ruta los %n lugares donde hizo clic después.)</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />

@@ -3539,10 +3539,12 @@
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
-            <translation>Még nem volt ismert, hogyan lehet eljutni oda, ahová utoljára kattintott, ezért az nincs benne az útvonalban.</translation>
+            <source>The ways to the %n places clicked last were not known yet, so they are not in the route.</source>
+            <translation>
+                <numerusform>A legutóbb kattintott %n helyre vezető út még nem volt ismert, ezért nincs benne az útvonalban.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -3573,6 +3575,13 @@
             <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} itt: {where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{why} (Nor are the %n places clicked after it in the route.)</source>
+            <translation>
+                <numerusform>{why} (Az utána kattintott %n hely sincs benne az útvonalban.)</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />

@@ -19,7 +19,7 @@ from ...control.route_queries import SHORTEST, RoutePreferences, RouteQuestion, 
 from ...layers.road_surfaces import Key, SurfaceMap, SurfaceStore, key_of
 from ...ui.actions import ICONS
 from ...ui.errors import FleetError, NotSentError
-from ...ui.language import tr
+from ...ui.language import tr, tr_count
 from .drawing_tools import RoutePreview
 from .route_tool import RouteTool
 
@@ -40,6 +40,7 @@ class RoadRouteTool(RouteTool):
         """Clicked goals still to be reached; the first of them is being queried."""
         desk.preview.answered.connect(self._receive)
         desk.preview.refused.connect(self._refused)
+        desk.preview.dropped.connect(self._leave_out)
 
     def lead_so(self, wishes: RoutePreferences) -> None:
         """Lead legs by ``wishes`` from now on; the preview to the mouse is queried again."""
@@ -47,7 +48,6 @@ class RoadRouteTool(RouteTool):
         self._way.clear()
 
     def deactivate(self) -> None:
-        self._clicks.clear()
         self._way.clear()
         super().deactivate()
 
@@ -72,8 +72,8 @@ class RoadRouteTool(RouteTool):
         if draft is not None and not self.is_for_selected(draft):
             return
         if not self.desk.preview.awaits_click:
-            # Earlier clicks were given up, or their answer is lost.
-            self._clicks.clear()
+            # The answer to an earlier one is lost.
+            self._leave_out()
         self._clicks.append(point)
         if len(self._clicks) == 1:
             self._lead_on()
@@ -91,10 +91,17 @@ class RoadRouteTool(RouteTool):
         if self._clicks and self.desk.drafts.draft is None:
             self._leave_out()
 
-    def _refused(self) -> None:
-        self._clicks.clear()
-        if self.draft is None:
-            self._is_finished = False
+    def _refused(self, why: str) -> None:
+        after = len(self._clicks) - 1
+        self._drop_clicks()
+        if after > 0:
+            why = tr_count(
+                after,
+                "{why} (Nor is the place clicked after it in the route.)",
+                "{why} (Nor are the %n places clicked after it in the route.)",
+                why=why,
+            )
+        self.desk.warning.emit(why)
 
     def _lead_on(self) -> None:
         robot, start = self._from()
@@ -102,16 +109,29 @@ class RoadRouteTool(RouteTool):
         try:
             self.desk.preview.want(question)
         except NotSentError:
-            self._clicks.clear()
+            self._clicks.pop(0)
+            self._leave_out()
             raise
 
-    def _leave_out(self) -> None:
-        """Report that the route to the last click comes too late: the draft was sent, or replaced."""
-        self._clicks.clear()
+    def _leave_out(self, *_: object) -> None:
+        """Report that the routes to the places clicked last come too late, or not at all."""
+        left_out = len(self._clicks)
+        if not left_out:
+            return
+        self._drop_clicks()
         self._way.clear()
         self.desk.warning.emit(
-            tr("The way to where you clicked last was not known yet, so it is not in the route.")
+            tr_count(
+                left_out,
+                "The way to where you clicked last was not known yet, so it is not in the route.",
+                "The ways to the %n places clicked last were not known yet, so they are not in the route.",
+            )
         )
+
+    def _drop_clicks(self) -> None:
+        self._clicks.clear()
+        if self.draft is None:
+            self._is_finished = False
 
     def _from(self) -> tuple[str | None, Point | None]:
         """Return the robot of the next leg, and its beginning; None for the robot's position."""
@@ -132,7 +152,12 @@ class RoadRouteTool(RouteTool):
         following, self._clicks = self._clicks[1:], []
         draft = self.draft or PendingCommand(question.robot, ROUTE, ())
         points = route.points if question.start is None else route.points[1:]
-        self.set_command(draft.with_leg(tuple(points), route_in_words(route, question.wishes)))
+        try:
+            self.set_command(draft.with_leg(tuple(points), route_in_words(route, question.wishes)))
+        except FleetError:
+            self._clicks = following
+            self._leave_out()
+            raise
         self._clicks = following
         if following:
             self._lead_on()

@@ -5,7 +5,9 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
+from fleet_supervisor.plugin.control.route_queries import RoutePreferences
 from fleet_supervisor.plugin.gateway_client.fleet_state import RequestResult
+from fleet_supervisor.plugin.ui.errors import NotSentError
 from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QApplication
@@ -81,6 +83,46 @@ def test_backspace_takes_back_the_last_click_though_its_way_is_not_found_yet(roa
     assert roads.draft is None
 
 
+@pytest.mark.parametrize("how", ["link", "wishes"])
+def test_clicks_whose_ways_are_dropped_are_told_and_are_not_what_backspace_takes_back(roads, how):
+    roads.hand.click((60, 40))
+    roads.find()
+    roads.hand.click((60, 60), (90, 60))
+    if how == "link":
+        roads.hand.window.desk.close_link()
+    else:
+        roads.hand.iface.canvas.mapTool().lead_so(RoutePreferences(fastest=True))
+    assert roads.hand.complained("The ways to the 2 places clicked last were not known yet")
+    assert roads.ends == [(60, 40)]
+    roads.hand.key(Qt.Key.Key_Backspace)
+    assert roads.draft is None
+
+
+@pytest.mark.parametrize("how", ["check", "question"])
+def test_the_click_after_one_that_failed_is_told_beside_the_error(roads, monkeypatch, how):
+    def fail(_):
+        raise NotSentError(f"there is no {how}")
+
+    roads.hand.click((60, 40), (60, 60))
+    if how == "check":
+        roads.hand.click((90, 60))
+        monkeypatch.setattr(roads.hand.iface.canvas.mapTool(), "set_command", fail)
+    else:
+        roads.hand.click((90, 60), (90, 80))
+        monkeypatch.setattr(roads.preview, "_sender", SimpleNamespace(submit=fail))
+    roads.find()
+    assert roads.hand.complained(f"there is no {how}")
+    assert roads.hand.complained("The ways to the 2 places clicked last were not known yet")
+
+
+def test_a_mouse_that_moves_between_clicks_takes_none_of_them_away(roads):
+    roads.hand.click((60, 40))
+    roads.hand.move(60, 50)
+    roads.hand.click((60, 60))
+    roads.find_all()
+    assert roads.ends == [(60, 40), (60, 60)]
+
+
 def test_backspace_on_the_only_click_leaves_nothing(roads):
     roads.hand.click((60, 40))
     roads.hand.key(Qt.Key.Key_Backspace)
@@ -151,7 +193,7 @@ def test_who_sends_before_the_last_way_is_found_is_told_that_it_is_not_in_the_ro
 def test_where_no_way_leads_the_clicks_after_it_are_not_led_from_elsewhere(roads):
     roads.hand.click((60, 40), (60, 60))
     roads.find(error="no road comes near")
-    assert roads.hand.complained("no road comes near")
+    assert roads.hand.complained("no road comes near (Nor is the place clicked after it in the route.)")
     roads.find_all()
     assert roads.draft is None
     roads.hand.click((70, 40))
@@ -178,6 +220,7 @@ def test_a_click_whose_answer_never_comes_is_told(roads):
 def test_leaving_the_tool_forgets_what_was_clicked_and_sends_nothing(roads):
     roads.hand.click((60, 40))
     roads.hand.iface.actionPan().trigger()
+    assert roads.hand.complained(LEFT_OUT)
     roads.find_all()
     assert roads.draft is None
     assert roads.hand.nothing_sent()

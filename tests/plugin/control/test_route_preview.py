@@ -14,6 +14,7 @@ from fleet_supervisor.plugin.control.route_queries import (
 )
 from fleet_supervisor.plugin.gateway_client.fleet_state import RequestResult
 from fleet_supervisor.plugin.map.tools.route_tool import RoutePreferencesDialog, surfaces_of
+from fleet_supervisor.plugin.ui.errors import NotSentError
 from fleet_supervisor.robot_bridge.core.messages.roads import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
@@ -104,6 +105,35 @@ def test_a_click_that_stays_unanswered_is_told_once_and_its_late_answer_leads_no
     assert not preview.awaits_click
     preview.accept_answer(RequestResult(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert taken == []
+
+
+def test_a_click_that_waits_too_long_is_told_though_the_mouse_moves_first(preview, gateway):
+    refused = []
+    preview.refused.connect(refused.append)
+    preview.want(to(1.0, taken=True))
+    gateway.now = SLOW_AFTER
+    preview.want(to(2.0))
+    assert len(refused) == 1 and gateway.goals() == [1.0, 2.0]
+
+
+def test_clicks_that_are_forgotten_or_cannot_be_asked_are_told(preview, gateway, monkeypatch):
+    dropped = []
+    preview.dropped.connect(lambda questions: dropped.append([question.goal[0] for question in questions]))
+    preview.want(to(1.0, taken=True))
+    preview.want(to(2.0, taken=True))
+    preview.forget()
+    preview.want(to(3.0))
+    preview.forget()
+    assert dropped == [[1.0, 2.0]]
+    preview.want(to(4.0))
+    preview.want(to(5.0, taken=True))
+    monkeypatch.setattr(gateway, "submit", _no_link)
+    gateway.answer(preview)
+    assert dropped == [[1.0, 2.0], [5.0]]
+
+
+def _no_link(order):
+    raise NotSentError("not connected")
 
 
 def test_a_click_behind_a_lost_question_is_asked_though_the_mouse_stands_still(preview, gateway):
