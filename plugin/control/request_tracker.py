@@ -10,10 +10,16 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages.base import DESK_REQUESTS, to_json
-from ...robot_bridge.core.messages.commands import AbortAll, Send
-from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
+from ...robot_bridge.core.messages.commands import AbortAll, CommandReport, Commands, Send
+from ...robot_bridge.core.messages.roads import (
+    CloseRoad,
+    ClosureReport,
+    ConflictResolved,
+    OpenRoad,
+    ResolveConflict,
+)
 from ...robot_bridge.core.messages.robots import Abort
-from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
+from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
@@ -293,28 +299,20 @@ class RequestTracker(QObject):
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
             return
-        result = answer.result or {}
-        commands = result.get("commands")
-        if "text" in result:
-            self.accepted.emit(f"{pending.words}: {result['text']}")
-        elif "closure" in result:
-            self.accepted.emit(tr("{words}: done", words=pending.words))
-        elif result.get("in_force"):
-            # The banner shows this for as long as it is true.
-            return
-        elif result.keys() & {"in_force", "revision", "queues", "placements", "tasks"}:
-            self.accepted.emit(tr("{words}: done", words=pending.words))
-        elif commands is None:
-            self.kept.emit(answer.order.key, pending.words)
-        else:
+        result, words = answer.result or {}, pending.words
+        declared = DESK_REQUESTS[answer.order.method].result
+        if declared is CommandReport:
+            self.kept.emit(answer.order.key, words)
+        elif declared is Commands:
+            count = len(result.get("commands", ()))
             self.accepted.emit(
-                tr_count(
-                    len(commands),
-                    "{words}: sent to 1 robot",
-                    "{words}: sent to %n robots",
-                    words=pending.words,
-                )
+                tr_count(count, "{words}: sent to 1 robot", "{words}: sent to %n robots", words=words)
             )
+        elif declared is ConflictResolved and "text" in result:
+            self.accepted.emit(f"{words}: {result['text']}")
+        elif declared is not EmergencyReport or not result.get("in_force"):
+            # The banner shows a stop for as long as it is in force.
+            self.accepted.emit(tr("{words}: done", words=words))
 
     def watch(self) -> None:
         """Warn once about each request that has waited too long for its answer."""

@@ -91,6 +91,7 @@ def test_the_map_is_sent_to_every_selected_robot(hand, gateway, wait):
     hand.window.desk.selection.select_all(["r1", "r2"])
     hand.window.actions.send_map.trigger()
     wait(lambda: gateway.requests_of("send_map") == [{"robot": "r1"}, {"robot": "r2"}])
+    wait(lambda: hand.draft_text == "Map for r2: done", what="that it was sent")
     hand.window.desk.selection.select(None)
     hand.window.actions.send_map.trigger()
     assert hand.complained("No robot is selected, so none was sent the map")
