@@ -291,14 +291,7 @@ class PendingCommandActions(QObject):
                     fault=draft.fault,
                 )
             )
-        if self._edits.awaits_answer(draft.robot):
-            raise NotSentError(
-                tr(
-                    "The gateway has not answered yet what was asked of the queue of {robot} before. Try "
-                    "again in a moment.",
-                    robot=draft.robot,
-                )
-            )
+        self._edits.check_answered(draft.robot)
         words = tr("{in_words}, into the queue", in_words=draft.in_words())
         if self._edits.add(draft.robot, queue_tasks(draft), words, draft.override, draft) is not None:
             self._desk.sending.clear(draft)

@@ -44,7 +44,7 @@ from ..gateway_client.state_words import (
     task_state_in_words,
 )
 from ..ui.actions import Actions
-from ..ui.errors import FleetError
+from ..ui.errors import FleetError, NotSentError
 from ..ui.glyphs import WRONG, WRONG_STYLE, for_letters
 from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
@@ -79,6 +79,17 @@ class QueueEdits(QObject):
     def awaits_answer(self, robot: str) -> bool:
         """Return whether a request about this queue has not been answered yet."""
         return robot in self._pending.values()
+
+    def check_answered(self, robot: str) -> None:
+        """Raise NotSentError where a request about this queue has not been answered yet."""
+        if self.awaits_answer(robot):
+            raise NotSentError(
+                tr(
+                    "The gateway has not answered yet what was asked of the queue of {robot} before. Try "
+                    "again in a moment.",
+                    robot=robot,
+                )
+            )
 
     def conflict(self, robot: str) -> str:
         """Return the error of a change that came too late; empty after the next one."""
@@ -505,7 +516,13 @@ class QueuePanel(QWidget):
 
     def _ask(self, edit: Callable[..., object], *how: str | None) -> None:
         robot = self._desk.selection.last
-        if robot is not None and self._is_free():
+        if robot is None:
+            return
+        try:
+            self._edits.check_answered(robot)
+        except NotSentError as error:
+            self._desk.warning.emit(str(error))
+        else:
             edit(robot, *how)
 
     def _hold_or_resume(self) -> None:

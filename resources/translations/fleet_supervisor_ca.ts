@@ -4988,11 +4988,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/pending_command_panel.py" />
-            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
-            <translation>La passarel·la encara no ha respost el que es va demanar abans de la cua de {robot}. Torneu-ho a provar d'aquí un moment.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/pending_command_panel.py" />
             <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
             <translation>No hi ha cap esborrany al mapa. Seleccioneu un robot, i poseu un objectiu de con o dibuixeu una ruta.</translation>
         </message>
@@ -5160,6 +5155,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>Task</source>
             <translation>Tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>La passarel·la encara no ha respost el que es va demanar abans de la cua de {robot}. Torneu-ho a provar d'aquí un moment.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />

@@ -4988,11 +4988,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/pending_command_panel.py" />
-            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
-            <translation>La pasarela aún no ha respondido a lo que se pidió antes de la cola de {robot}. Inténtelo de nuevo en un momento.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/pending_command_panel.py" />
             <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
             <translation>No hay ningún borrador en el mapa. Seleccione un robot, y ponga un objetivo de cono o dibuje una ruta.</translation>
         </message>
@@ -5160,6 +5155,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>Task</source>
             <translation>Tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>La pasarela aún no ha respondido a lo que se pidió antes de la cola de {robot}. Inténtelo de nuevo en un momento.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />

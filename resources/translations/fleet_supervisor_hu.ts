@@ -4958,11 +4958,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/pending_command_panel.py" />
-            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
-            <translation>Az átjáró még nem válaszolt arra, amit {robot} várólistájától előbb kért. Próbálja újra egy pillanat múlva.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/pending_command_panel.py" />
             <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
             <translation>Nincs vázlat a térképen. Jelöljön ki robotot, majd tegyen bójacélt vagy rajzoljon útvonalat a térképre.</translation>
         </message>
@@ -5130,6 +5125,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>Task</source>
             <translation>Feladat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>Az átjáró még nem válaszolt arra, amit {robot} várólistájától előbb kért. Próbálja újra egy pillanat múlva.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />

@@ -71,6 +71,17 @@ def test_a_layer_of_points_goes_in_by_name_and_in_order(desk, iface, gateway, wa
     assert len({task.task for task in tasks(gateway)}) == 3
 
 
+def test_while_an_answer_is_awaited_it_stays_on_the_map_and_that_is_told(desk, iface, gateway, wait):
+    gateway.mute.add("pause_queue")
+    desk.queue_edits.pause("r1")
+    desk.actions.cone.trigger()
+    iface.click(70, 55)
+    enqueue(desk)
+    wait(lambda: any("has not answered yet what was asked of the queue" in text for text in iface.texts()))
+    assert desk.desk.drafts.draft is not None
+    assert gateway.requests_of("add_tasks") == []
+
+
 def test_what_may_not_be_sent_may_not_be_queued(desk, iface, gateway, wait):
     iface.look_at(-60, -60, 260, 200)
     desk.actions.cone.trigger()

@@ -207,13 +207,16 @@ def test_no_button_moves_whatever_becomes_of_the_queue(panel, at_desk, gateway, 
     watched.check("none is selected")
 
 
-def test_while_an_answer_is_awaited_nothing_else_is_asked_but_to_pause(panel, gateway, wait):
+@pytest.mark.parametrize("how", ["Delete", "Alt+Down"])
+def test_while_an_answer_is_awaited_nothing_else_is_asked_but_to_pause(panel, gateway, iface, wait, how):
     gateway.mute.add("remove_task")
     choose(panel, 1)
     press(panel, Qt.Key.Key_Delete)
     wait(lambda: len(gateway.requests_of("remove_task")) == 1)
-    press(panel, Qt.Key.Key_Delete)
-    press(panel, Qt.Key.Key_Down, ALT)
+    assert iface.texts() == []
+    press(panel, *((Qt.Key.Key_Delete,) if how == "Delete" else (Qt.Key.Key_Down, ALT)))
+    (told,) = iface.texts()
+    assert "has not answered yet what was asked of the queue of r1 before" in told
     QTest.qWait(150)
     assert len(gateway.requests_of("remove_task")) == 1
     assert gateway.requests_of("move_task") == []
