@@ -22,6 +22,7 @@ from ...control.pending_command import PendingCommand, Point
 from ...gateway_client.command_cache import ON_PATH_M, PathApproach
 from ...gateway_client.robot_states import RobotArrays
 from ...layers.site_transform import SiteToMapTransform
+from ...ui.errors import MapTransformError
 from ...ui.glyphs import painting
 
 Points = npt.NDArray[np.float64]
@@ -291,6 +292,7 @@ def _path_of(task: CommandReport) -> TaskPath | None:
 
 
 _NOWHERE: Points = np.empty((0, 2))
+_SITE_ORIGIN: Points = np.zeros((1, 2))
 
 
 @dataclass(frozen=True)
@@ -320,7 +322,7 @@ class MapScene:
     robot, or along the site's x of one whose heading is not known. It is empty where the axes of
     ``transform``, which places other things, give it.
 
-    Robots without a position have NaN.
+    Robots without a position, or with one that has no place there, have NaN.
     """
 
     scene: SiteScene
@@ -345,9 +347,9 @@ class SceneTransformer:
         self._draft = _NOWHERE
 
     def placed(self, scene: SiteScene, transform: SiteToMapTransform) -> MapScene:
-        """Place everything.
+        """Place everything; a robot whose position has no place in the map's CRS is left out.
 
-        :raises MapTransformError: when a position has no place in the map's CRS.
+        :raises MapTransformError: when the site, or something else than a robot, has no place there.
         """
         if transform is not self._transform:
             self._transform, self._plans, self._of, self._outline = transform, {}, None, None
@@ -357,17 +359,21 @@ class SceneTransformer:
         is_known = outline is self._outline
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
-        # Taking rows with [] takes numpy ten times as long.
-        known_places = robots.xy if len(there) == len(robots.xy) else robots.xy.take(there, axis=0)
         is_uneven = transform.axes is None
-        parts = [
-            known_places,
-            known_places + _forward(robots.theta.take(there)) if is_uneven else _NOWHERE,
+        others = [
             _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
         ]
-        at, before, draft, cursor, *ways = _parted(transform.to_map(np.concatenate(parts)), parts)
+        try:
+            parts = [*_robot_points(robots, there, is_uneven=is_uneven), *others]
+            placed = transform.to_map(np.concatenate(parts))
+        except MapTransformError:
+            transform.to_map(_SITE_ORIGIN)
+            there = there[_have_place(robots.xy[there], transform)]
+            parts = [*_robot_points(robots, there, is_uneven=is_uneven), *others]
+            placed = transform.to_map(np.concatenate(parts))
+        at, before, draft, cursor, *ways = _parted(placed, parts)
         if scene.plans is not self._of:
             known.update(zip(new, ways, strict=True))
             self._plans = {plan: known[plan] for plan in scene.plans}
@@ -383,6 +389,25 @@ class SceneTransformer:
             cursor,
             transform,
         )
+
+
+def _robot_points(robots: RobotArrays, rows: npt.NDArray[np.intp], *, is_uneven: bool) -> list[Points]:
+    """Return where the robots in ``rows`` are, and 1 m ahead of them where the map is ``is_uneven``."""
+    # Taking rows with [] takes numpy ten times as long.
+    xy = robots.xy if len(rows) == len(robots.xy) else robots.xy.take(rows, axis=0)
+    return [xy, xy + _forward(robots.theta.take(rows)) if is_uneven else _NOWHERE]
+
+
+def _have_place(xy: Points, transform: SiteToMapTransform) -> npt.NDArray[np.bool_]:
+    """Return (n,) whether each position, and one a metre from it, has a place in the map's CRS."""
+    try:
+        transform.to_map(np.concatenate([xy, xy + 1.0, xy - 1.0]))
+    except MapTransformError:
+        if len(xy) == 1:
+            return np.zeros(1, dtype=np.bool_)
+        half = len(xy) // 2
+        return np.concatenate([_have_place(xy[:half], transform), _have_place(xy[half:], transform)])
+    return np.ones(len(xy), dtype=np.bool_)
 
 
 def _forward(theta: npt.NDArray[np.float64]) -> Points:

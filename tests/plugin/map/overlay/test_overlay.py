@@ -69,6 +69,20 @@ def test_the_robot_under_the_mouse_is_found(canvas, site):
     assert overlay.robot_at(x, y + 30) is None
 
 
+def test_a_robot_that_the_map_cannot_place_takes_no_other_from_it(canvas, site):
+    robots = [
+        (60, 50, 0.0, RobotState.FRESH),
+        (8e7, 9e7, 0.0, RobotState.FRESH),
+        (70, 50, 0.0, RobotState.FRESH),
+    ]
+    show(canvas, site, scene_of(robots[0]), crs="EPSG:4326")
+    placed = SceneTransformer().placed(scene_of(*robots), placement_of(canvas, site))
+    assert np.isfinite(placed.robots).all(axis=1).tolist() == [True, False, True]
+    assert np.isfinite(placed.metre).all(axis=1).tolist() == [True, False, True]
+    alone = SceneTransformer().placed(scene_of(robots[0], robots[2]), placement_of(canvas, site))
+    assert np.array_equal(placed.robots[[0, 2]], alone.robots)
+
+
 def test_the_viewport_is_not_filled_twice_where_the_scene_covers_it(canvas, site):
     filled = Qt.WidgetAttribute.WA_OpaquePaintEvent
     overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
