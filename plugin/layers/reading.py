@@ -125,13 +125,11 @@ class OneAtATime:
     def __init__(self) -> None:
         self._turns = ReadingTurns()
 
-    def read(self, name: str, provider: str, reader: Reader[T]) -> Steps[T]:
+    def read(self, name: str, reader: Reader[T]) -> Steps[T]:
         """Return the result of ``reader`` for the layer ``name``.
 
         :raises LayerReadingError: when nothing has come from it within the time limit.
         """
-        if provider == IN_MEMORY:
-            return reader.read(lambda: True)
         try:
             return (yield from self._turns.read(reader))
         except StalledError as error:

@@ -226,7 +226,7 @@ def _rows(
     layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, readings: OneAtATime, *, selected: bool
 ) -> Steps[list[PointRow]]:
     reader = _RowReader(layer, project, frame, selected)
-    return (yield from readings.read(layer.name(), layer.providerType(), reader))
+    return (yield from readings.read(layer.name(), reader))
 
 
 class _RowReader:

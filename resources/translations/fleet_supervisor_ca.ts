@@ -5960,6 +5960,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
+            <source>The layer {layer} takes no cones without the fields {fields}: add them, or remove the layer.</source>
+            <translation>La capa {layer} no admet cons sense els camps {fields}: afegiu-los, o traieu la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/layouts/layout_layer.py" />
             <source>The layer {layer} takes no cones: make it writable, or remove it.</source>
             <translation>La capa {layer} no admet cons: feu-la editable, o traieu-la.</translation>
         </message>

@@ -5926,6 +5926,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
+            <source>The layer {layer} takes no cones without the fields {fields}: add them, or remove the layer.</source>
+            <translation>A(z) {layer} réteg nem fogad bójákat e mezők nélkül: {fields}. Vegye fel őket, vagy távolítsa el a réteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/layouts/layout_layer.py" />
             <source>The layer {layer} takes no cones: make it writable, or remove it.</source>
             <translation>A(z) {layer} réteg nem fogad bójákat: tegye írhatóvá, vagy távolítsa el.</translation>
         </message>

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,9 +33,9 @@ from ...layers.layer_source import LayerWatch, ObstacleSource, obstacle_sources
 from ...layers.reading import IN_MEMORY, OneAtATime, thread_feedback
 from ...layers.road_layers import read_areas
 from ...layers.roles import OBSTACLE_ROLES, ROAD_SURFACE, LayerExpressions, layers_with_role, setup_of
-from ...layers.site_transform import SiteGeoreference
+from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...processing.common.algorithm import RESOURCES
-from ...processing.common.cone_layers import CONE_FIELDS, cone_values, read_obstacles
+from ...processing.common.cone_layers import CONE_FIELDS, cone_values, point_rows, read_obstacles
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
 from ...ui.scheduling import BackgroundReading, Steps
@@ -60,16 +61,14 @@ class StandingReader:
     """Reads the cones of a layer, in any thread."""
 
     def __init__(self, layer: QgsVectorLayer):
+        self._name = layer.name()
         self._features = QgsVectorLayerFeatureSource(layer)
 
     def read(self, go_on: Callable[[], bool]) -> list[StandingCone]:
-        found = []
-        for feature in self._features.getFeatures(QgsFeatureRequest()):
-            if not go_on():
-                break
-            place = feature.geometry().asPoint()
-            found.append(StandingCone(feature.id(), str(feature["id"]), place.x(), place.y()))
-        return found
+        """Return the cones; raises LayerReadingError naming a feature that is not one point."""
+        features = takewhile(lambda _: go_on(), self._features.getFeatures(QgsFeatureRequest()))
+        rows = point_rows(self._name, features, LayerToSiteTransform(None, None), ("id",))
+        return [StandingCone(row.feature, row.name, row.x, row.y) for row in rows]
 
 
 class LayoutLayer:
@@ -107,8 +106,20 @@ class LayoutLayer:
         return name if name not in ids else next(prefix for prefix in taken if prefix not in ids)
 
     def add(self, cones: Sequence[Cone], name: str, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
-        """Add ``cones``, which are in ``crs``, to the layer; create it where there is none."""
+        """Add ``cones``, which are in ``crs``, to the layer; create it where there is none.
+
+        :raises MapTransformError: when the layer lacks a field, or cannot be written.
+        """
         layer = self.layer() or self._made(crs)
+        if missing := [field for field in CONE_FIELDS if layer.fields().indexOf(field) < 0]:
+            raise MapTransformError(
+                tr(
+                    "The layer {layer} takes no cones without the fields {fields}: add them, or remove the "
+                    "layer.",
+                    layer=layer.name(),
+                    fields=", ".join(missing),
+                )
+            )
         features = []
         for cone in cones:
             feature = QgsFeature(layer.fields())
@@ -148,14 +159,14 @@ class LayoutLayer:
     def standing(self) -> Steps[list[StandingCone]]:
         """Return the cones in the layer, in its CRS.
 
-        :raises LayerReadingError: when the layer does not answer.
+        :raises LayerReadingError: when the layer does not answer, and at a feature that is not one point.
         :raises MapTransformError: when it has been replaced meanwhile.
         """
         layer = self.layer()
         if layer is None:
             return []
         number, name, reader = layer.id(), layer.name(), StandingReader(layer)
-        found = yield from self._readings.read(name, layer.providerType(), reader)
+        found = yield from self._readings.read(name, reader)
         layer = self.layer()
         if layer is None or layer.id() != number:
             raise MapTransformError(tr("The layer of cones is another one now: place the layout again."))

@@ -402,7 +402,11 @@ class LayoutTool(QgsMapTool):
             self._standing = np.empty((0, 2))
 
     def _have_standing(self) -> None:
-        cones = self._standing_reading.result()
+        try:
+            cones = self._standing_reading.result()
+        except FleetError:
+            # A click there shows why.
+            cones = []
         self._standing = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
         self._rest.start()
 

@@ -48,10 +48,11 @@ from .parameters import chosen_crs, site_crs_parameter
 
 @dataclass(frozen=True)
 class PointRow:
-    """One feature: its name in errors, its own name, its place (metres, site frame), its values."""
+    """One feature: its name in errors, its own name and id, its place (metres, site frame), its values."""
 
     where: str
     name: str
+    feature: int
     x: float
     y: float
     values: dict[str, Any]
@@ -111,7 +112,7 @@ def point_rows(
             for field, value in zip(feature.fields().names(), feature.attributes(), strict=True)
         }
         named = (str(values[field]) for field in names if values.get(field) not in (None, ""))
-        yield PointRow(where, next(named, str(feature.id())), x, y, values)
+        yield PointRow(where, next(named, str(feature.id())), feature.id(), x, y, values)
 
 
 def _place(feature: QgsFeature, placing: LayerToSiteTransform, where: str) -> tuple[float, float]:

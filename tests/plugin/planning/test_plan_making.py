@@ -106,8 +106,8 @@ def test_unloading_takes_panel_layers_and_tasks_away(panel, plugin, wait, iface,
     endless()
     panel.form.seconds.setValue(60.0)
     press(panel, "fleet_plan_solve")
+    wait(lambda: (task := panel.drafts.task) is not None and task.progress() > 0, 20, "progress")
     task = panel.drafts.task
-    wait(lambda: task.progress() > 0, 20, "progress")
     plugin.unload()
     wait(lambda: not task.is_under_way, what="the end of its thread")
     names = {layer.name() for layer in QgsProject.instance().mapLayers().values()}

@@ -92,6 +92,12 @@ def cones():
     }
 
 
+def placed(wait, count):
+    """Wait until so many cones stand, and return them."""
+    wait(lambda: not no_layer() and len(cones()) == count, what=f"{count} cones")
+    return cones()
+
+
 def no_layer():
     return not QgsProject.instance().mapLayers()
 
@@ -131,13 +137,11 @@ def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface,
     pixel = iface.canvas.mapUnitsPerPixel()
     iface.hover(40, 50)
     iface.click(40, 50)
-    made = cones()
-    assert len(made) == 7
+    made = placed(wait, 7)
     assert made["slalom-3"] == pytest.approx((46, 50, 90), abs=2 * pixel)
     turn(iface, 6)
     iface.click(80, 60)
-    made = cones()
-    assert len(made) == 14
+    made = placed(wait, 14)
     assert made["slalom-2-3"] == pytest.approx((80, 54, 180), abs=2 * pixel)
     wait(lambda: len(iface.said) == 2, what="the checks")
     assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
@@ -212,36 +216,63 @@ def test_a_layer_that_is_changed_under_the_preview_counts_as_it_is_now(slalom, r
     wait(lambda: len(slalom.bad_preview()) == 3, what="the marks without the wall")
 
 
-def test_a_layout_that_was_placed_is_taken_back_and_done_again(slalom, entry, iface):
+def test_a_layout_that_was_placed_is_taken_back_and_done_again(slalom, entry, iface, wait):
     for place in ((40, 50), (40, 80)):
         iface.click(*place)
-    assert len(cones()) == 14
+    placed(wait, 14)
     QTest.keyClick(iface.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    assert sorted(cones()) == [f"slalom-{k}" for k in range(1, 8)]
+    assert sorted(placed(wait, 7)) == [f"slalom-{k}" for k in range(1, 8)]
     QTest.keySequence(iface.canvas, QKeySequence(QKeySequence.StandardKey.Redo))
-    assert len(cones()) == 14
+    placed(wait, 14)
     assert entry.dimensions.undo.isEnabled()
     for left in (7, 0):
         QTest.mouseClick(entry.dimensions.undo, Qt.MouseButton.LeftButton)
-        assert len(cones()) == left
+        placed(wait, left)
     assert not entry.dimensions.undo.isEnabled()
 
 
-def test_in_another_project_nothing_is_taken_back(slalom, iface):
+def test_a_cone_without_a_place_is_named_and_nothing_is_placed(slalom, iface, wait):
     iface.click(40, 50)
+    placed(wait, 7)
+    (layer,) = QgsProject.instance().mapLayersByName("Cones")
+    layer.dataProvider().addFeature(QgsFeature(layer.fields()))
+    # Reads what stands there for the preview, too.
+    slalom.show_layout(slalom.layout)
+    wait(lambda: not slalom._standing_reading.is_under_way, what="the preview's reading")
+    iface.click(40, 80)
+    named = "Cones, feature 8 is not one point with a place on the site: correct or delete it."
+    wait(lambda: (named, True) in iface.said, what="the refusal")
+    assert layer.featureCount() == 8
+
+
+def test_a_layer_whose_field_was_removed_takes_no_cones(slalom, iface, wait):
+    iface.click(40, 50)
+    placed(wait, 7)
+    (layer,) = QgsProject.instance().mapLayersByName("Cones")
+    layer.dataProvider().deleteAttributes([layer.fields().indexOf("id")])
+    layer.updateFields()
+    iface.click(40, 80)
+    named = "The layer Cones takes no cones without the fields id: add them, or remove the layer."
+    wait(lambda: (named, True) in iface.said, what="the refusal")
+    assert layer.featureCount() == 7
+
+
+def test_in_another_project_nothing_is_taken_back(slalom, iface, wait):
+    iface.click(40, 50)
+    placed(wait, 7)
     QgsProject.instance().clear()
     LayoutLayer(QgsProject.instance()).add(
         slalom.layout.cones("slalom"), "slalom", QgsCoordinateReferenceSystem("EPSG:32633")
     )
     QTest.keyClick(iface.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    wait(lambda: ("There is nothing to take back.", False) in iface.said, what="the answer")
     assert len(cones()) == 7
-    assert iface.said[-1] == ("There is nothing to take back.", False)
 
 
 def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, iface, tmp_path, wait):
     project = QgsProject.instance()
     iface.click(40, 50)
-    before = cones()
+    before = placed(wait, 7)
     (layer,) = project.mapLayersByName("Cones")
     number = layer.id()
     assert project.write(str(tmp_path / "yard.qgz"))
@@ -258,17 +289,19 @@ def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, ifac
     assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
 
 
-def test_a_file_that_is_there_already_is_not_written_over(slalom, iface, tmp_path):
+def test_a_file_that_is_there_already_is_not_written_over(slalom, iface, tmp_path, wait):
     (tmp_path / "yard_cones.gpkg").write_text("mine")
     iface.click(40, 50)
+    placed(wait, 7)
     assert QgsProject.instance().write(str(tmp_path / "yard.qgz"))
     assert (tmp_path / "yard_cones.gpkg").read_text() == "mine"
     assert (tmp_path / "yard_cones_2.gpkg").exists()
 
 
-def test_cones_that_cannot_be_saved_with_the_project_are_told(slalom, iface, tmp_path, monkeypatch):
+def test_cones_that_cannot_be_saved_with_the_project_are_told(slalom, iface, tmp_path, wait, monkeypatch):
     monkeypatch.setattr(layout_layer, "_free_path", lambda _project: tmp_path / "no_such" / "cones.gpkg")
     iface.click(40, 50)
+    placed(wait, 7)
     assert QgsProject.instance().write(str(tmp_path / "yard.qgz"))
     text, complaint = iface.said[-1]
     assert complaint and "The cones of the layer Cones are not saved with the project" in text
@@ -377,7 +410,7 @@ def test_every_dimension_has_a_field_with_its_unit_and_the_standards_value(entry
                 assert field.suffix().strip() == one.unit
 
 
-def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, iface):
+def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, iface, wait):
     shown = fields("slalom")
     iface.hover(40, 50)
     type_into(shown["count"], "3")
@@ -386,7 +419,7 @@ def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, if
     assert len(entry.tool.preview()) == 7
     pixel = iface.canvas.mapUnitsPerPixel()
     iface.click(40, 60)
-    assert cones()["slalom-3"] == pytest.approx((40, 54, 180), abs=2 * pixel)
+    assert placed(wait, 7)["slalom-3"] == pytest.approx((40, 54, 180), abs=2 * pixel)
     assert shown["count"].font().bold() and not shown["gate_width"].font().bold()
 
 
@@ -433,7 +466,7 @@ def test_what_was_kept_and_cannot_be_any_more_is_the_standards(entry, fields):
     assert remembered(LAYOUTS["slalom"]) == LAYOUTS["slalom"].of({})
 
 
-def test_a_layout_is_turned_and_placed_by_keys_alone(entry, fields, iface):
+def test_a_layout_is_turned_and_placed_by_keys_alone(entry, fields, iface, wait):
     fields("slalom")
     canvas = iface.canvas
     assert len(entry.tool.preview()) == 13
@@ -445,7 +478,7 @@ def test_a_layout_is_turned_and_placed_by_keys_alone(entry, fields, iface):
         QTest.keyClick(canvas, key, modifiers)
         assert entry.tool.heading == entry.dimensions.heading.value() == heading
     QTest.keyClick(canvas, Qt.Key.Key_Return)
-    assert len(cones()) == 13
+    placed(wait, 13)
     QTest.keyClick(canvas, Qt.Key.Key_F2)
     assert entry.dimensions.focusWidget() is entry.dimensions.heading
     QTest.keyClick(entry.dimensions, Qt.Key.Key_Escape)
