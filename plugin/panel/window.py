@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,6 @@ from qgis.gui import (
     QgisInterface,
     QgsApplicationExitBlockerInterface,
     QgsCustomDropHandler,
-    QgsMapTool,
 )
 from qgis.PyQt.QtCore import QMimeData, QObject, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
@@ -40,7 +40,7 @@ from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
 from ..settings.profile import KnownGateways
 from ..ui.actions import Actions
 from ..ui.dialogs import QuestionDialog
-from ..ui.errors import FleetError, Part, remove_all
+from ..ui.errors import FleetError, Part, Removal, remove_all
 from ..ui.language import first_of, tr, tr_count
 from .alarms.alarm_panel import AlarmPanel
 from .alarms.board import alarm_colour
@@ -67,22 +67,31 @@ class FleetWindow(QObject):
         self._reasons: set[str] = set()
         """Reasons why the link is down that the message bar has shown."""
         self._gateways = KnownGateways()
-        canvas = iface.mapCanvas()
-        self.desk = FleetController(canvas, QgsProject.instance(), self)
-        self.actions = Actions(self)
-        self._parts: list[Part] = []
+        self.desk = FleetController(iface.mapCanvas(), QgsProject.instance(), self)
+        self._parts: list[Part] = [Removal(self.deleteLater)]
         """Parts that :meth:`remove` removes, the last one first."""
-        self.notices = self._add(MessageBar(iface.messageBar(), self))
+        try:
+            self._build(iface.mainWindow())
+        except Exception:
+            # Nobody else knows this window yet.
+            self.remove()
+            raise
+
+    def _build(self, window: QMainWindow) -> None:
+        self.actions = Actions(self)
+        self.notices = self._add(MessageBar(self._iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
-        self._add(QuitGuard(iface, self.desk.orders))
+        self._add(QuitGuard(self._iface, self.desk.orders))
         self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
         self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
         self.queue_marks = self._add(QueueMarks(self.desk))
-        self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
+        self.dock = FleetDock(self.desk, self.actions, self.queue_edits, window)
+        self._add(Removal(self._remove_dock))
         self.road_layers = self._add(RoadLayers(self.desk.state, self.desk.project, self))
         self.standing_cones = self._add(StandingCones(self.desk.state, self.desk.project, self))
-        self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
+        self.toolbar: QToolBar = self._iface.addToolBar("Fleet Supervisor")
+        self._add(Removal(self._remove_toolbar))
         self.toolbar.setObjectName("fleet_toolbar")
         self._road_route = RoadRouteTool(self.desk)
         self._tools = {
@@ -91,13 +100,16 @@ class FleetWindow(QObject):
             self.actions.road_route: self._road_route,
             self.actions.route: RouteTool(self.desk),
             self.actions.start: StartTool(self.desk),
-            self.actions.closures: ClosureTool(self.desk, iface.mainWindow()),
+            self.actions.closures: ClosureTool(self.desk, window),
         }
-        self._draft_menu = QMenu(tr("Targets and routes"), iface.mainWindow())
+        for action in self._tools:
+            self._add(Removal(partial(self._remove_tool, action)))
+        self._draft_menu = QMenu(tr("Targets and routes"), window)
+        self._add(Removal(self._remove_entries))
         self._draft_menu.setObjectName("fleet_draft_menu")
         self._draft_menu.setIcon(self.actions.cone.icon())
         self.draft_commands = self._add(
-            PendingCommandActions(self.desk, self.queue_edits, self.actions, iface.mainWindow())
+            PendingCommandActions(self.desk, self.queue_edits, self.actions, window)
         )
         self.robot_pauses = PauseActions(self.desk, self.queue_edits, self.actions, self)
         self._wire_actions()
@@ -105,33 +117,43 @@ class FleetWindow(QObject):
 
     def remove(self) -> None:
         """Remove every part from the window and wait for the connection's threads."""
-        self.desk.shut_down()
-        if asked := self.desk.orders.unanswered:
-            text = tr(
-                "Closed before the gateway answered, so it may be done or not: {asked}",
-                asked="; ".join(asked),
-            )
-            QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Critical)
-        for tool in self._tools.values():
-            self._put_away(tool)
-            tool.deleteLater()
-        self._tools.clear()
-        try:
-            remove_all(self._parts)
-        finally:
-            self._leave()
+        # Before every part that it reports to.
+        self._parts.append(Removal(self._shut_down))
+        remove_all(self._parts)
 
-    def _leave(self) -> None:
-        """Remove toolbar, panel and menu entries from the window."""
+    def _shut_down(self) -> None:
+        """End the link, and log which requests it leaves unanswered."""
+        try:
+            self.desk.shut_down()
+        finally:
+            if asked := self.desk.orders.unanswered:
+                text = tr(
+                    "Closed before the gateway answered, so it may be done or not: {asked}",
+                    asked="; ".join(asked),
+                )
+                QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Critical)
+
+    def _remove_tool(self, action: QAction) -> None:
+        tool, canvas = self._tools.pop(action), self._iface.mapCanvas()
+        if canvas.mapTool() is tool:
+            canvas.unsetMapTool(tool)
+            # A QGIS without any map tool would not react to clicks.
+            self._iface.actionPan().trigger()
+        tool.deleteLater()
+
+    def _remove_entries(self) -> None:
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
         self._draft_menu.deleteLater()
+
+    def _remove_toolbar(self) -> None:
         window: QMainWindow = self._iface.mainWindow()
         window.removeToolBar(self.toolbar)
         self.toolbar.deleteLater()
+
+    def _remove_dock(self) -> None:
         self._iface.removeDockWidget(self.dock)
         self.dock.deleteLater()
-        self.deleteLater()
 
     def _add(self, part: Any) -> Any:
         self._parts.append(part)
@@ -200,13 +222,6 @@ class FleetWindow(QObject):
             self.view.follow(mode)
         elif self.view.following is mode:
             self.view.follow(FollowMode.NOBODY)
-
-    def _put_away(self, tool: QgsMapTool) -> None:
-        canvas = self._iface.mapCanvas()
-        if canvas.mapTool() is tool:
-            canvas.unsetMapTool(tool)
-            # A QGIS without any map tool would not react to clicks.
-            self._iface.actionPan().trigger()
 
     def _connect_or_not(self, connect: bool) -> None:
         self.desk.messages.end(CONNECTING)

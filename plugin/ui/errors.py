@@ -5,7 +5,8 @@ Every part is removed even if another one raises.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol
 
 
 class Part(Protocol):
@@ -13,6 +14,12 @@ class Part(Protocol):
 
     def remove(self) -> None:
         """Remove from QGIS everything that the constructor added."""
+
+
+class Removal(NamedTuple):
+    """A part without a class of its own, by the function that removes it."""
+
+    remove: Callable[[], None]
 
 
 def remove_all(parts: list[Part]) -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.control.fleet_controller import FleetController
 from fleet_supervisor.plugin.locator import RobotLocator
 from fleet_supervisor.plugin.map.overlay.task_painter import QueueMarks
+from fleet_supervisor.plugin.map.tools.drawing_tools import ConeTool
+from fleet_supervisor.plugin.panel.queue import PauseActions
 from fleet_supervisor.plugin.panel.window import WindowAlarms
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.tour.tour_panel import TourAction
@@ -18,7 +21,7 @@ def state_of(iface):
     return {**left_behind(iface), "functions": len(QgsExpression.Functions())}
 
 
-@pytest.mark.parametrize("part", [WindowAlarms, RobotLocator, TourAction, MenuLetters])
+@pytest.mark.parametrize("part", [PauseActions, WindowAlarms, RobotLocator, TourAction, MenuLetters])
 def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
     def fail(*_):
         raise RuntimeError("no such thing")
@@ -37,9 +40,17 @@ def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
     assert state_of(iface) == before
 
 
-@pytest.mark.parametrize("part", [RobotLocator, QueueMarks])
-def test_all_the_others_are_taken_out_where_one_part_fails_to_go(iface, monkeypatch, part):
-    go = part.remove
+@pytest.mark.parametrize(
+    ("part", "name"),
+    [
+        (RobotLocator, "remove"),
+        (QueueMarks, "remove"),
+        (FleetController, "shut_down"),
+        (ConeTool, "deleteLater"),
+    ],
+)
+def test_all_the_others_are_taken_out_where_one_part_fails_to_go(iface, monkeypatch, part, name):
+    go = getattr(part, name)
 
     def fail(self):
         go(self)
@@ -48,7 +59,7 @@ def test_all_the_others_are_taken_out_where_one_part_fails_to_go(iface, monkeypa
     before = state_of(iface)
     plugin = FleetPlugin(iface)
     plugin.initGui()
-    monkeypatch.setattr(part, "remove", fail)
+    monkeypatch.setattr(part, name, fail)
     with pytest.raises(RuntimeError, match="it will not go"):
         plugin.unload()
     assert plugin.window is None

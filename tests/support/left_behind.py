@@ -29,6 +29,7 @@ def left_behind(iface):
         "threads": len([t for t in gc.get_objects() if isinstance(t, QThread) and t.isRunning()]),
         "named threads": len([p for p in Path("/proc/self/task").glob("*/comm") if "fleet" in p.read_text()]),
         "notices": len(iface.texts()),
+        "exit blockers": len(iface.exit_blockers),
         "providers": len(QgsApplication.processingRegistry().providers()),
         "children": len(iface.children()),
     }
