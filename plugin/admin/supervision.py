@@ -411,6 +411,7 @@ class RobotRemoval:
         self._asking = PendingQueries(desk.orders, table)
         self._asking.refused.connect(desk.failed)
         self._question: RemovalDialog | None = None
+        """The dialog that is open."""
         self.action = QAction(
             QIcon(str(ICONS / "remove_robots.svg")), tr("Remove robots…"), iface.mainWindow()
         )
@@ -439,15 +440,24 @@ class RobotRemoval:
         chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)
+        # Another gateway's robots of the same names are other ones.
+        self._desk.state.link_changed.connect(dialog.reject)
+        dialog.finished.connect(self._forget_question)
+        self._question = dialog
         dialog.open()
 
     def remove(self) -> None:
-        """Remove the entries."""
+        """Close the dialog, and remove the entries."""
+        if self._question is not None:
+            self._question.reject()
         self._table.setContextMenuPolicy(Qt.ContextMenuPolicy.DefaultContextMenu)
         self._table.removeAction(self._here)
         self._connections.withdraw(self.action)
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()
+
+    def _forget_question(self) -> None:
+        self._question = None
 
     def _gone(self) -> list[str]:
         views = self._desk.state.robots.views(self._desk.clock.steady())

@@ -106,6 +106,19 @@ def test_enter_and_escape_remove_nobody(asked, gateway, key):
     assert gateway.requests_of("remove_robots") == []
 
 
+def test_on_another_link_the_question_is_gone(asked, gone, gateway):
+    dialog = asked("old-01")
+    gone.actions.connect.trigger()
+    assert not dialog.isVisible()
+    assert gateway.requests_of("remove_robots") == []
+
+
+def test_an_unloaded_plugin_leaves_no_question(asked, gone, plugin):
+    dialog = asked("old-01")
+    plugin.unload()
+    assert not dialog.isVisible()
+
+
 def test_what_the_gateway_refuses_is_said(asked, gateway, iface, wait):
     gateway.refuse["remove_robots"] = "remove_robots: an emergency stop is in force; clear it first"
     confirm(asked("old-01"))
