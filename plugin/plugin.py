@@ -153,7 +153,7 @@ class FleetPlugin:
             (RolesAction, iface, MENU),
             (LayoutAction, iface, MENU, notices),
             (SurfaceAction, iface, MENU, self._surfaces, notices),
-            (PlansAction, iface, MENU, desk),
+            (PlansAction, iface, MENU, desk, window.view),
             (ObservationsAction, iface, MENU, desk),
             (ReplayAction, iface, MENU, desk),
             (RecordingsAction, iface, MENU, connections, desk),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-import numpy as np
-from qgis.core import QgsPointXY
 from qgis.PyQt.QtCore import QMimeData, QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QFont, QKeyEvent
 from qgis.PyQt.QtWidgets import (
@@ -382,8 +380,11 @@ class TaskList(QTreeView):
 class QueuePanel(QWidget):
     """Shows one queue and requests changes; nothing is moved here before the gateway has reported it.
 
-    A double click on a task shows its place on the map.
+    A double click on a task requests its place on the map.
     """
+
+    place_requested = pyqtSignal(float, float)
+    """The goal of a task, metres in the site frame."""
 
     def __init__(self, desk: FleetController, edits: QueueEdits, parent: QWidget | None = None):
         super().__init__(parent)
@@ -533,13 +534,7 @@ class QueuePanel(QWidget):
 
     def _go(self, row: int) -> None:
         task = self.list.tasks.tasks[row]
-        try:
-            ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([(task.x, task.y)]))
-        except FleetError as error:
-            self._desk.warning.emit(str(error))
-            return
-        self._desk.canvas.setCenter(QgsPointXY(x, y))
-        self._desk.canvas.refresh()
+        self.place_requested.emit(task.x, task.y)
 
 
 def _button(name: str, text: str, tip: str, others: tuple[str, ...] = ()) -> QToolButton:

@@ -202,6 +202,7 @@ class FleetWindow(QObject):
         desk.emergency_changed.connect(self._show_emergency)
         self.dock.table.zoom_requested.connect(self.view.zoom_to)
         self.dock.log.place_requested.connect(self.view.show_place)
+        self.dock.queue_panel.place_requested.connect(self.view.show_place)
         desk.messages.posted.connect(self.notices.show_message)
         desk.messages.withdrawn.connect(self.notices.remove_text)
         self.notices.closed.connect(desk.messages.forget)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from qgis.core import QgsPointXY
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import (
@@ -26,6 +25,7 @@ from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, CollectLayout
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_REQUEST, Level
 from ..control.pending_command import in_brief
+from ..map.live_view import LiveView
 from ..panel.pending_command_panel import OverrideDialog
 from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import ShrinkableScrollArea, confirm, push_button
@@ -249,6 +249,9 @@ def _against(report: PlanReport) -> list[str]:
 class PlanDock(ActionDock):
     """Builds the parts. :meth:`remove` undoes what they did outside of it."""
 
+    place_requested = pyqtSignal(float, float)
+    """The place of a cone or of a stop, metres in the site frame."""
+
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(tr("Cone plan"), "fleet_plan_dock", parent)
         self._desk = desk
@@ -428,11 +431,6 @@ class PlanDock(ActionDock):
     def _ask_for_placements(self) -> None:
         self._try(lambda: self._desk.orders.ask(GetPlacements(limit=MOST_PLACEMENTS), tr("Placed cones")))
 
-    def _go_to(self, x: float, y: float) -> None:
-        ((east, north),) = self._desk.site_to_canvas.transform().to_map([(x, y)]).tolist()
-        self._desk.canvas.setCenter(QgsPointXY(east, north))
-        self._desk.canvas.refresh()
-
     def _refuse(self, why: str) -> None:
         """Report why an action on a plan was not done; shown until the next request."""
         self._desk.report_failure(why, PLAN_REQUEST)
@@ -487,8 +485,8 @@ class PlanDock(ActionDock):
         self.cancel.clicked.connect(self.drafts.cancel)
         self.tree.move_requested.connect(lambda *where: self._try(lambda: self.drafts.move(*where)))
         self.tree.remove_requested.connect(lambda target: self._try(lambda: self.drafts.remove(target)))
-        self.tree.place_requested.connect(self._go_to)
-        self.placed.place_requested.connect(self._go_to)
+        self.tree.place_requested.connect(self.place_requested)
+        self.placed.place_requested.connect(self.place_requested)
         bar.send_plan_requested.connect(self.ask_to_send)
         bar.clear_requested.connect(lambda: self._try(self.driven.clear))
         bar.override_requested.connect(self.ask_to_override)
@@ -521,11 +519,13 @@ class PlanDock(ActionDock):
 class PlansAction(DockAction):
     """The entry and its panel."""
 
-    def __init__(self, iface: QgisInterface, menu: str, desk: FleetController):
+    def __init__(self, iface: QgisInterface, menu: str, desk: FleetController, view: LiveView):
+        dock = PlanDock(desk, iface.mainWindow())
+        dock.place_requested.connect(view.show_place)
         super().__init__(
             iface,
             menu,
-            PlanDock(desk, iface.mainWindow()),
+            dock,
             icon="assign_cones.svg",
             text=tr("Cone plan"),
             name="fleet_plan_panel",

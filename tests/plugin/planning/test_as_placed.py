@@ -11,12 +11,14 @@ import pytest
 from fleet_supervisor.plugin.planning.as_placed import COLUMNS, deviation_summary, select_placed_cones
 from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
-from qgis.core import QgsProject
+from qgis.core import QgsCoordinateReferenceSystem, QgsProject
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog
 
-from tests.plugin.planning.panel_parts import press
+from tests.plugin.planning.panel_parts import E, N, press
+
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
 
 
 def placed(number, cone="c", at=1_700_000_000.0, deviation=0.05, **more):
@@ -58,6 +60,22 @@ def page(panel, gateway, wait):
     panel.placed.which.setCurrentIndex(panel.placed.which.findText("everything"))
     wait(lambda: len(panel.placed.placements) == 2, 10, "the placed cones")
     return panel.placed
+
+
+def test_a_double_click_shows_the_place_or_why_it_cannot_be_shown(page, iface):
+    place = page.table.visualItemRect(page.table.item(0, 0)).center()
+
+    def double_click():
+        QTest.mouseClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
+        QTest.mouseDClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
+
+    one = page.placements[-1]
+    double_click()
+    middle = iface.canvas.center()
+    assert (middle.x() - E, middle.y() - N) == pytest.approx((one.x, one.y))
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem(f"wkt:{YARD}"))
+    double_click()
+    assert any("nothing is known of how the two lie to each other" in text for text in iface.texts())
 
 
 def test_the_csv_reads_back_with_commas_quotes_and_lines_in_names(page, tmp_path):
