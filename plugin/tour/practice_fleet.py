@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 import re
+import time
+from functools import partial
 from pathlib import Path
 
-from qgis.PyQt.QtCore import QObject, QProcess, QProcessEnvironment, QStandardPaths, QTemporaryDir, pyqtSignal
+from qgis.PyQt.QtCore import (
+    QObject,
+    QProcess,
+    QProcessEnvironment,
+    QStandardPaths,
+    QTemporaryDir,
+    QTimer,
+    pyqtSignal,
+)
 
 from ..ui.language import tr
 
@@ -41,7 +51,7 @@ class PracticeFleet(QObject):
     ready = pyqtSignal(str)
     """The fleet is running; the URL of its desk."""
     failed = pyqtSignal(str)
-    """It did not start: the reason, and the remedy."""
+    """It did not start, or one of its robots does not run: the reason, and the remedy."""
 
     def __init__(self, program: str | None = None, parent: QObject | None = None):
         super().__init__(parent)
@@ -74,17 +84,16 @@ class PracticeFleet(QObject):
         gateway.start(self.program, words)
 
     def stop(self) -> None:
-        """End every process, in good order if it does so soon."""
-        processes, self._processes, self._gateway, self.url = self._processes, [], None, ""
-        for process in processes:
-            process.blockSignals(True)
-            process.terminate()
-        for process in processes:
-            if not process.waitForFinished(PATIENCE_MS):
-                process.kill()
-                process.waitForFinished(PATIENCE_MS)
-            process.deleteLater()
-        self._folder = None
+        """End every process, in good order if it does so soon; does not wait for it."""
+        if self._processes:
+            _EndingProcesses(self._processes, self._folder, self)
+        self._processes, self._folder, self._gateway, self.url = [], None, None, ""
+
+    def remove(self) -> None:
+        """End every process, and wait until all have ended."""
+        self.stop()
+        for ending in self.findChildren(_EndingProcesses):
+            ending.wait()
 
     def _process(self) -> QProcess:
         process = QProcess(self)
@@ -105,14 +114,31 @@ class PracticeFleet(QObject):
         found = LISTENING.search(self._output)
         if found:
             self.url = f"{found.group(1)}/desk"
-            self._start_robots(f"{found.group(1)}/robot")
+            # Before the robots: where one does not run, that is the last message.
             self.ready.emit(self.url)
+            if self.running:
+                self._start_robots(f"{found.group(1)}/robot")
 
     def _start_robots(self, url: str) -> None:
         for name, pose in POSES.items():
             robot = self._process()
             robot.setStandardOutputFile(QProcess.nullDevice())
+            robot.errorOccurred.connect(partial(self._robot_failed, name, robot))
+            robot.finished.connect(partial(self._robot_failed, name, robot))
             robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}", WITH_QGIS])
+
+    def _robot_failed(self, name: str, robot: QProcess, *_: object) -> None:
+        failed = robot.error() != QProcess.ProcessError.UnknownError
+        why = robot.errorString() if failed else tr("it ended with code {code}", code=robot.exitCode())
+        self.failed.emit(
+            tr(
+                "The practice robot {robot} does not run: {why}. Close the tour and start the practice fleet "
+                "again; if that fails, see what {program} says by hand.",
+                robot=name,
+                why=why.rstrip("."),
+                program=self.program,
+            )
+        )
 
     def _ended(self, *_: object) -> None:
         if self._gateway is None:
@@ -128,3 +154,44 @@ class PracticeFleet(QObject):
                 program=self.program,
             )
         )
+
+
+class _EndingProcesses(QObject):
+    """Ends ``processes``: their standard input is closed, and after a while they are killed.
+
+    The ``folder`` that they use is deleted when the last one has ended.
+    """
+
+    def __init__(self, processes: list[QProcess], folder: QTemporaryDir | None, parent: QObject):
+        super().__init__(parent)
+        self._processes, self._folder = processes, folder
+        self._patience = QTimer(self)
+        self._patience.setSingleShot(True)
+        self._patience.timeout.connect(self._kill)
+        self._patience.start(PATIENCE_MS)
+        for process in processes:
+            process.disconnect()
+            process.setParent(self)
+            process.stateChanged.connect(self._forget_ended)
+            process.closeWriteChannel()
+        self._forget_ended()
+
+    def wait(self) -> None:
+        """Wait until all have ended; those that have not soon are killed."""
+        until = time.monotonic() + PATIENCE_MS / 1000
+        for process in self._processes:
+            process.waitForFinished(max(0, round(1000 * (until - time.monotonic()))))
+        self._kill()
+        for process in self._processes:
+            process.waitForFinished(PATIENCE_MS)
+        self._forget_ended()
+
+    def _kill(self) -> None:
+        for process in self._processes:
+            process.kill()
+
+    def _forget_ended(self, *_: object) -> None:
+        if all(process.state() == QProcess.ProcessState.NotRunning for process in self._processes):
+            self._patience.stop()
+            self._folder = None
+            self.deleteLater()

@@ -388,6 +388,7 @@ class TourAction(QObject):
         """Remove every part from the window."""
         self._window.desk.state.link_changed.disconnect(self._show_practice)
         self.end()
+        self.fleet.remove()
         self._remove_offer()
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()

@@ -9584,6 +9584,16 @@
             <translation>La flota de pràctica necessita robot-bridge, que no és en aquest ordinador. En un terminal, a la carpeta del projecte: python3 -m venv gateway, després gateway/bin/pip install . i poseu gateway/bin al PATH; o make setup. Després reinicieu QGIS. La visita es pot llegir sense ell.</translation>
         </message>
         <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>The practice robot {robot} does not run: {why}. Close the tour and start the practice fleet again; if that fails, see what {program} says by hand.</source>
+            <translation>El robot de pràctica {robot} no funciona: {why}. Tanqueu la visita i torneu a arrencar la flota de pràctica; si falla, mireu què diu {program} a mà.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>it ended with code {code}</source>
+            <translation>ha acabat amb el codi {code}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/tour/tour_panel.py" />
             <source>&amp;Back</source>
             <translation>&amp;Enrere</translation>

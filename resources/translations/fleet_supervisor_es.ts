@@ -9584,6 +9584,16 @@
             <translation>La flota de práctica necesita robot-bridge, que no está en este ordenador. En un terminal, en la carpeta del proyecto: python3 -m venv gateway, después gateway/bin/pip install . y ponga gateway/bin en el PATH; o make setup. Después reinicie QGIS. El recorrido se puede leer sin él.</translation>
         </message>
         <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>The practice robot {robot} does not run: {why}. Close the tour and start the practice fleet again; if that fails, see what {program} says by hand.</source>
+            <translation>El robot de práctica {robot} no funciona: {why}. Cierre el recorrido y arranque otra vez la flota de práctica; si falla, vea qué dice {program} a mano.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>it ended with code {code}</source>
+            <translation>terminó con el código {code}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/tour/tour_panel.py" />
             <source>&amp;Back</source>
             <translation>&amp;Atrás</translation>

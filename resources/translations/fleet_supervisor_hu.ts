@@ -9519,6 +9519,16 @@
             <translation>A gyakorlóflottához a robot-bridge kell, amely nincs ezen a számítógépen. Terminálban, a projekt mappájában: python3 -m venv gateway, majd gateway/bin/pip install . és a gateway/bin kerüljön a PATH-ra; vagy make setup. Azután indítsa újra a QGIS-t. A bemutató enélkül is olvasható.</translation>
         </message>
         <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>The practice robot {robot} does not run: {why}. Close the tour and start the practice fleet again; if that fails, see what {program} says by hand.</source>
+            <translation>A(z) {robot} gyakorlórobot nem fut: {why}. Zárja be a bemutatót, és indítsa újra a gyakorlóflottát; ha nem sikerül, nézze meg, mit mond a {program} kézzel indítva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/tour/practice_fleet.py" />
+            <source>it ended with code {code}</source>
+            <translation>{code} kóddal ért véget</translation>
+        </message>
+        <message>
             <location filename="../../plugin/tour/tour_panel.py" />
             <source>&amp;Back</source>
             <translation>&amp;Vissza</translation>

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.panel.window import MENU, FleetWindow
 from fleet_supervisor.plugin.settings.profile import GatewayConnection
+from fleet_supervisor.plugin.tour import practice_fleet
 from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program
 from fleet_supervisor.plugin.tour.tour_panel import FLEET, OFFERED, PROJECT, STEPS, TourAction
 from qgis.core import QgsSettings
@@ -51,6 +53,22 @@ def tour(iface):
     made = Tour(iface)
     yield made
     made.remove()
+
+
+def is_running(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def program_in(folder, first="true", then="sleep 600"):
+    """Return a program that does ``first``, says that it listens, and becomes ``then``."""
+    program = folder / "robot-bridge"
+    program.write_text(f"#!/bin/sh\n{first}\necho listening on ws://127.0.0.1:1\nexec {then}\n")
+    program.chmod(0o755)
+    return program
 
 
 def at_of(offer):
@@ -172,6 +190,55 @@ def test_a_program_that_ends_is_told_with_what_it_said(iface, wait, tmp_path):
     tour.remove()
 
 
+def test_closing_it_waits_for_no_process_and_its_folder_goes_with_the_last(
+    qgis_app, wait, tmp_path, monkeypatch
+):
+    program = program_in(tmp_path)
+    fleet = PracticeFleet(program=str(program))
+    fleet.start()
+    wait(lambda: len(fleet._processes) == 4, what="the robots")
+    wait(lambda: all(process.processId() for process in fleet._processes), what="the start of the robots")
+    pids = [process.processId() for process in fleet._processes]
+    folder = Path(fleet._folder.path())
+    monkeypatch.setattr(practice_fleet, "PATIENCE_MS", 50)
+    fleet.stop()
+    assert not fleet.running
+    assert all(is_running(pid) for pid in pids) and folder.exists()
+    wait(lambda: not folder.exists(), what="the end of the last process")
+    assert not any(is_running(pid) for pid in pids)
+
+
+def test_when_it_is_removed_every_process_has_ended(qgis_app, wait, tmp_path, monkeypatch):
+    fleet = PracticeFleet(program=str(program_in(tmp_path)))
+    fleet.start()
+    wait(lambda: len(fleet._processes) == 4, what="the robots")
+    wait(lambda: all(process.processId() for process in fleet._processes), what="the start of the robots")
+    pids = [process.processId() for process in fleet._processes]
+    monkeypatch.setattr(practice_fleet, "PATIENCE_MS", 50)
+    fleet.remove()
+    assert not any(is_running(pid) for pid in pids)
+
+
+@pytest.mark.parametrize(
+    ("robot", "why"),
+    [('rm "$0"', "not run: "), ("echo '#!/bin/sh\nexit 3' > $0", "not run: it ended with code 3")],
+)
+def test_a_robot_that_does_not_run_is_named(iface, wait, tmp_path, robot, why):
+    program = program_in(tmp_path, robot, "cat")
+    tour = Tour(iface, PracticeFleet(program=str(program)))
+    said = []
+    tour.action.fleet.failed.connect(said.append)
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    wait(lambda: len(said) == 3, what="the three robots")
+    assert all(
+        any(f"practice robot {name} does {why}" in text for text in said) for name in ("r1", "r2", "r3")
+    )
+    assert tour.text("fleet_tour_said") == said[-1]
+    tour.remove()
+
+
 def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gateway, wait):
     tour.desk.open_link(gateway.url, "anna")
     wait(lambda: tour.desk.state.link.phase is ConnectionPhase.CONNECTED)
@@ -220,9 +287,7 @@ def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
     assert tour.action.panel is None
     assert tour.window.dock.connection_panel.url() == before
     assert tour.desk.state.link.phase is ConnectionPhase.CLOSED
-    for pid in pids:
-        with pytest.raises(ProcessLookupError):
-            os.kill(pid, 0)
+    wait(lambda: not any(is_running(pid) for pid in pids), what="the end of the processes")
 
 
 def test_its_address_is_not_kept_for_the_next_session(tour):
