@@ -150,7 +150,7 @@ class GatewayClient:
     async def _hold(self) -> None:
         socket = None
         try:
-            async with self._connect() as socket:
+            async with self._connect(await self._tls()) as socket:
                 await self._converse(socket)
         finally:
             if socket is not None:
@@ -158,7 +158,15 @@ class GatewayClient:
                 # makes the library confuse the two and leave the socket open.
                 socket.transport.abort()
 
-    def _connect(self) -> Any:
+    async def _tls(self) -> dict[str, Any]:
+        """Return the option for TLS, if it is used."""
+        if not connection_status.uses_tls(self._url):
+            return {}
+        # In a thread: a CA file that does not answer must not keep the link from being given up.
+        loop = asyncio.get_running_loop()
+        return {"ssl": await loop.run_in_executor(None, self._credentials.tls_context)}
+
+    def _connect(self, tls: dict[str, Any]) -> Any:
         options: dict[str, Any] = {
             **self._addresses.options(),
             "close_timeout": CLOSE_WITHIN,
@@ -167,6 +175,7 @@ class GatewayClient:
             "write_limit": PIECE,
             "compression": None,
             **self._credentials.options(self._url),
+            **tls,
         }
         version = self._library.version.version
         if int(version.split(".")[0]) >= 15:
@@ -349,7 +358,9 @@ class ConnectionThread(QObject):
 
         Where it does not answer, to another gateway of the fleet: those ``known``, and those it reports.
 
-        :raises AddressError: when the URL is invalid for a gateway, or the token or the CA file is unusable.
+        An unusable CA file ends the link.
+
+        :raises AddressError: when the URL is invalid for a gateway, or the token is unusable.
         :raises LibraryMissingError: when there is no WebSocket library.
         """
         url = connection_status.check_address(url)

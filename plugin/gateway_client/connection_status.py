@@ -32,22 +32,15 @@ class OperatorCredentials:
     ca_file: str = ""
 
     def options(self, url: str) -> dict[str, Any]:
-        """Return the options for ``websockets`` to connect to ``url``; raises AddressError."""
-        self._check_token(url)
+        """Return the options for ``websockets`` to connect to ``url``, without TLS; raises AddressError."""
+        self.check(url)
         options: dict[str, Any] = {}
         if self.token:
             options["additional_headers"] = {"Authorization": f"Bearer {self.token}"}
-        if urlsplit(url).scheme == "wss":
-            options["ssl"] = self._context()
         return options
 
     def check(self, url: str) -> None:
-        """Raise AddressError when these credentials cannot be used with ``url``."""
-        self._check_token(url)
-        if urlsplit(url).scheme == "wss":
-            self._context()
-
-    def _check_token(self, url: str) -> None:
+        """Raise AddressError when the token cannot be used with ``url``; the CA file is not read."""
         parts = urlsplit(url)
         if self.token and (not self.token.isascii() or len(self.token.split()) != 1):
             raise AddressError(
@@ -62,7 +55,11 @@ class OperatorCredentials:
                 )
             )
 
-    def _context(self) -> ssl.SSLContext:
+    def tls_context(self) -> ssl.SSLContext:
+        """Return a TLS context; reads the CA file, which may be on a share that does not answer.
+
+        :raises AddressError: when the CA file cannot be used.
+        """
         try:
             context = ssl.create_default_context(cafile=self.ca_file or None)
         except (OSError, ssl.SSLError) as error:
@@ -76,6 +73,11 @@ class OperatorCredentials:
             ) from error
         context.minimum_version = ssl.TLSVersion.TLSv1_2
         return context
+
+
+def uses_tls(url: str) -> bool:
+    """Return whether the gateway at ``url`` is reached over TLS."""
+    return urlsplit(url).scheme == "wss"
 
 
 def check_address(url: str) -> str:
@@ -217,7 +219,7 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkEr
             ),
             final=True,
         )
-    return _network_failure(error, place, secure=urlsplit(url).scheme == "wss")
+    return _network_failure(error, place, secure=uses_tls(url))
 
 
 MISREAD = (ValueError, KeyError, TypeError, AttributeError)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import ssl
+import threading
 from pathlib import Path
 
 import pytest
@@ -136,17 +139,47 @@ def test_tls_to_a_gateway_without_it_says_so(connection, gateway, bridge, wait):
             "everybody on the way could read",
         ),
         ("ws://127.0.0.1:8765/desk", OperatorCredentials("two words"), "it is one word"),
-        (
-            "wss://127.0.0.1:8765/desk",
-            OperatorCredentials("", "/nowhere/ca.pem"),
-            "CA file /nowhere/ca.pem cannot",
-        ),
     ],
 )
 def test_what_cannot_be_right_is_refused_before_anything_is_sent(connection, url, credentials, says):
     with pytest.raises(AddressError, match=says):
         connection.open(url, "Ada", credentials)
     assert not connection.is_open
+
+
+def test_an_unusable_ca_file_is_named_and_read_outside_the_windows_thread(connection, wait, monkeypatch):
+    made_in, create = [], ssl.create_default_context
+
+    def note_thread(**options):
+        made_in.append(threading.get_ident())
+        return create(**options)
+
+    monkeypatch.setattr(ssl, "create_default_context", note_thread)
+    connection.open("wss://127.0.0.1:9/desk", "Ada", OperatorCredentials("", "/nowhere/ca.pem"))
+    link = link_when(connection, wait, ConnectionPhase.FAILED)
+    assert "The CA file /nowhere/ca.pem cannot be used: No such file or directory." in link.reason
+    assert link.wants_token
+    assert made_in and threading.get_ident() not in made_in
+
+
+def test_a_link_is_given_up_while_its_ca_file_does_not_answer(connection, wait, tmp_path):
+    ca = tmp_path / "ca.pem"
+    os.mkfifo(ca)
+    writers = []
+
+    def is_read():
+        # Refused as long as nobody reads.
+        with contextlib.suppress(OSError):
+            writers.append(os.open(ca, os.O_WRONLY | os.O_NONBLOCK))
+        return bool(writers)
+
+    connection.open("wss://127.0.0.1:9/desk", "Ada", OperatorCredentials("", str(ca)))
+    wait(is_read, what="the reading of the CA file")
+    try:
+        connection.close()
+        wait(lambda: connection.collect_updates() and not connection.is_ending, what="the end of the link")
+    finally:
+        os.close(writers.pop())
 
 
 def test_a_revoked_token_ends_the_link_and_it_is_not_tried_again(connection, bridge, wait):
