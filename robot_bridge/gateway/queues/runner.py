@@ -294,8 +294,7 @@ class QueueRunner:
 
     async def advance(self) -> None:
         """Process the scheduled queues: settle ended tasks, send the next ones."""
-        async with asyncio.TaskGroup() as group:
-            self._begin(group)
+        await asyncio.gather(*self._begin())
 
     async def redirect(
         self, robot: str, path: SetPath, operator: str, reason: str | None = None
@@ -349,16 +348,20 @@ class QueueRunner:
 
     # --------------------------------------------------------------------------------------------------
 
-    def _begin(self, group: asyncio.TaskGroup) -> None:
+    def _begin(self, group: asyncio.TaskGroup | None = None) -> list[asyncio.Task[None]]:
         """Begin to process each scheduled queue, or leave it scheduled while it is being processed."""
         self._event.clear()
         begun = self._due - self._advancing
         self._due -= begun
+        start, tasks = asyncio.create_task if group is None else group.create_task, []
         # A robot that was removed still has a queue, in case it comes back.
         for robot in sorted(robot for robot in begun if robot in self._robots):
             self._advancing.add(robot)
             # Of its own: while a long way of one robot is planned, the others are sent on.
-            group.create_task(self._advance(robot)).add_done_callback(partial(self._end, robot))
+            task = start(self._advance(robot))
+            task.add_done_callback(partial(self._end, robot))
+            tasks.append(task)
+        return tasks
 
     def _end(self, robot: str, _task: asyncio.Task[None]) -> None:
         self._advancing.discard(robot)
