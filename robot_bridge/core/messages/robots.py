@@ -424,6 +424,9 @@ Observed = SetObject | SendImage
 Question = GetMap | GetPath | GetPosIni | GetPosEnd | GetSurface
 Request = Ready | Stopped | Alive | OpAck | Position | Question | Observed
 Command = SetPosEnd | SetPath | SetPosIni | Abort
+MOTIONS = SetPosEnd, SetPath
+"""Commands that set a robot in motion: a stop holds them back, and an Abort makes them void."""
+MOTION_OPS = tuple(motion.__name__ for motion in MOTIONS)
 Answer = Start | OpAck | SetMap | SetSurface | Command
 
 REQUESTS: dict[str, type[Request]] = {

@@ -17,9 +17,8 @@ from ...core.clock import steady_time
 from ...core.errors import LockedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError, to_json
-from ...core.messages.robots import PAYLOADS, Abort, SetMap
+from ...core.messages.robots import MOTION_OPS, PAYLOADS, Abort, SetMap
 from ...protocol.codec import parse_params, with_base64
-from ..fleet.emergency_persistence import HELD_BACK
 from ..fleet.service import Fleet
 from ..monitoring import BackgroundTasks
 from ..storage.repositories.requests import AnswerRow, Outbox
@@ -147,7 +146,7 @@ class _SentMessages:
 
     def is_revoked(self, row: AnswerRow) -> bool:
         """Return whether ``row`` moves the robot, and is older than an Abort that it was sent."""
-        return row.op in HELD_BACK and row.id < self.newest_abort
+        return row.op in MOTION_OPS and row.id < self.newest_abort
 
 
 class Delivery:
@@ -250,7 +249,7 @@ class Delivery:
         for row in sent.unsent(await self._fleet.outboxes.outbox(self._robot, sent.last, sent.last_urgent)):
             # Recorded first: it must never be withdrawn as not yet sent. All else is recorded afterwards, so
             # that no Abort waits for the database, nor behind a message that does.
-            drives = row.op in HELD_BACK
+            drives = row.op in MOTION_OPS
             checked_at = steady_time()
             is_due = not sent.is_revoked(row) and (
                 not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
@@ -281,7 +280,7 @@ class Delivery:
             # While this waited for its turn the robot may have been sent a stop.
             if self._stops != stops:
                 return False
-            if row.op in HELD_BACK and not self._fleet.outboxes.may_send(self._robot, checked_at):
+            if row.op in MOTION_OPS and not self._fleet.outboxes.may_send(self._robot, checked_at):
                 return False
             begun.set()
             if row.op == ABORT:

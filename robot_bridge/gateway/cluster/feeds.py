@@ -16,7 +16,7 @@ from ...core.errors import StoreError
 from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport
 from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
-from ...core.messages.robots import SetPath, SetPosEnd
+from ...core.messages.robots import MOTION_OPS
 from ..model.events import (
     CommandChanged,
     CommandChangedElsewhere,
@@ -48,8 +48,6 @@ LEFT_AT_ONCE = 1000
 MET_WITHIN_S, MOST_UNMET = 10.0, 2000
 """Seconds for which a command waits for its robot to be known here, which takes one or two, and how many
 wait; a removed robot never is."""
-MOVING = (SetPosEnd.__name__, SetPath.__name__)
-"""The commands that move robots."""
 
 
 class StepFeed:
@@ -151,7 +149,7 @@ class StepFeed:
         self._listeners.announce("command", report.command, to_json(report))
 
     def _record_doing(self, report: CommandReport) -> None:
-        if self._robots.gateway_of(report.robot) is None or report.op not in MOVING:
+        if self._robots.gateway_of(report.robot) is None or report.op not in MOTION_OPS:
             return
         if report.state.is_open:
             self._robots.assign(report.robot, report.command)

@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 from ...core.geometry import Polyline
 from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport, CommandState, CommandStep
-from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
+from ...core.messages.robots import MOTIONS, Abort, Command, OpAck, SendPos
 from ..model.arrival import Arrival, PathArrival, arrival_judge
 
 log = logging.getLogger(__name__)
@@ -131,7 +131,7 @@ class ActiveCommand:
     @property
     def is_motion(self) -> bool:
         """Return whether it makes the robot drive."""
-        return isinstance(self.message, (SetPosEnd, SetPath))
+        return isinstance(self.message, MOTIONS)
 
     @property
     def is_abort(self) -> bool:
@@ -289,7 +289,7 @@ def because(what: str, reason: str | None) -> str:
 
 def _replaces(message: Command, command: ActiveCommand) -> bool:
     """Return whether a new ``message`` makes an older ``command`` of the same kind void."""
-    if isinstance(message, (SetPosEnd, SetPath)):
+    if isinstance(message, MOTIONS):
         return command.is_motion
     if command.is_emergency and not (isinstance(message, Abort) and message.emergency):
         return False

@@ -25,7 +25,7 @@ from ...core.clock import Clock, steady_time
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.robots import Answer, OpAck, SendPos, SetPath, SetPosEnd
+from ...core.messages.robots import MOTION_OPS, Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
@@ -54,8 +54,6 @@ YOUNG_S = 600.0
 """seconds for which that holds. An older Abort would stop a robot for no visible reason: see LATER_S."""
 LATER_S = 2.0
 """the same for an older Abort: twice the difference of clocks above which it is logged."""
-MOTIONS = (SetPosEnd.__name__, SetPath.__name__)
-"""Commands that send a robot on."""
 MOST_LATE = 1000
 """most acknowledgements of ended commands that wait for the database."""
 
@@ -403,7 +401,7 @@ class CommandService(CommandReader):
         """Raise RefusedError where the robot was sent on after an Abort that was left; StoreError."""
         order, age = kept.order, self._clock.time() - kept.at
         after = kept.at + (SENT_ON_S if age < YOUNG_S else LATER_S)
-        for newest in await self._database.run(commands.newest, order.robot, 1, MOTIONS):
+        for newest in await self._database.run(commands.newest, order.robot, 1, MOTION_OPS):
             if newest.steps[0].at > after:
                 raise RefusedError(
                     f"it was not stored, and the robot has been sent on since ({newest.op} of "

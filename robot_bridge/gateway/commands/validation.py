@@ -12,7 +12,7 @@ from typing import Protocol, runtime_checkable
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
 from ...core.messages.commands import CommandState
-from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd
+from ...core.messages.robots import MOTIONS, Abort, Command, SetPath, SetPosEnd
 from ...core.messages.safety import Ability
 from ..model.robots import Robots
 from ..site.places import ServedSite, keepout_refusals
@@ -113,7 +113,7 @@ class CommandReader:
     def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
         """Return the robot's motion, and the metres of it (of a path) that it has driven."""
         for command in reversed(self._open.of(robot)):
-            if isinstance(command.message, (SetPosEnd, SetPath)):
+            if isinstance(command.message, MOTIONS):
                 return command.message, command.driven or 0.0
         return None
 
@@ -279,7 +279,7 @@ class StopCount:
 
     def check(self, order: CommandOrder) -> None:
         """Raise RefusedError for a motion whose robot was stopped after it was asked."""
-        is_motion = isinstance(order.message, (SetPosEnd, SetPath))
+        is_motion = isinstance(order.message, MOTIONS)
         if is_motion and order.asked is not None and order.asked < self._newest.get(order.robot, 0):
             raise RefusedError(
                 f"robot {order.robot!r}: an Abort or a pause came while this was checked; ask again if it is "

@@ -33,7 +33,7 @@ from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
 from ...core.messages.base import MessageError, check_command_id, check_expires_in, check_robot_name
-from ...core.messages.robots import Abort, SetPath, SetPosEnd
+from ...core.messages.robots import MOTION_OPS, Abort
 from ..cluster.stop_relay import NOTE_VALID_S
 from ..commands.active_command import CommandOrder, KeptAbort
 from ..commands.persistence import write_bare_aborts
@@ -352,8 +352,6 @@ class AbortJournal(JournalFile):
 # halved until the failing ones are found: each group is a transaction of its own. Of a table that takes
 # nothing a few robots show that it is none of theirs.
 
-MOTIONS = (SetPosEnd, SetPath)
-HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
 BARE_AFTER_S = 1.0
 """seconds after which robots that only read the database are sent a bare Abort of a stop that is not stored
 yet: somebody may have a table locked that they do not read."""
@@ -565,18 +563,18 @@ def orders_of(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:
 def _write_stop(stop: StopRow, robots: Sequence[str], connection: Connection) -> None:
     # This withdraws not only the messages of commands, but answers to GetPath, too.
     if emergency_stops.add(connection, stop):
-        requests.remove_everywhere(connection, HELD_BACK)
+        requests.remove_everywhere(connection, MOTION_OPS)
     else:
         # Another gateway stored it, and may have cleared it by now: its robots may be sent on.
         _withdraw_motions(robots, connection)
 
 
 def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:
-    requests.remove_kinds(connection, robots, HELD_BACK)
+    requests.remove_kinds(connection, robots, MOTION_OPS)
 
 
 def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
-    write_bare_aborts(connection, robots, HELD_BACK, emergency=True)
+    write_bare_aborts(connection, robots, MOTION_OPS, emergency=True)
 
 
 def _use(connection: Connection) -> None:

@@ -18,7 +18,7 @@ from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import LONGEST_OPERATOR, one_line, to_json
 from ...core.messages.commands import CommandReport
-from ...core.messages.robots import Abort
+from ...core.messages.robots import MOTIONS, Abort
 from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
@@ -28,7 +28,7 @@ from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
-from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter, orders_of
+from .emergency_persistence import StopJournal, StopWriter, orders_of
 
 # --- Emergency stop: every robot is sent the stop before anything else is done, and no motion until a
 # supervisor clears it.
@@ -37,8 +37,6 @@ from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter, 
 # on this computer (a few milliseconds) and sent over every open connection; it is stored as soon as the
 # database can be written. Reports show that a stop is not stored yet. Robots on SQL are reached only by the
 # database, so the stop is sent to them when it can be written again.
-
-__all__ = ["HELD_BACK", "EmergencyStops"]
 
 log = logging.getLogger(__name__)
 

@@ -14,7 +14,7 @@ from ...core.errors import RefusedError, StoreError
 from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.base import Done
 from ...core.messages.commands import SendMap
-from ...core.messages.robots import Answer, OpAck, SetMap, Start
+from ...core.messages.robots import MOTION_OPS, Answer, OpAck, SetMap, Start
 from ...core.messages.safety import RobotState
 from ...core.robotmap.model import Border, EncodedMap
 from ..commands.service import CommandService
@@ -28,7 +28,6 @@ from ..storage.repositories.requests import AnswerRow, Outbox
 from ..storage.repositories.trajectories import PackedFix
 from ..storage.rows import BatchedWork
 from ..trajectories.recording import TrajectoryWriter
-from .emergency_persistence import HELD_BACK
 from .emergency_stop import EmergencyStops
 
 log = logging.getLogger(__name__)
@@ -200,7 +199,7 @@ class RobotOutboxes:
         read, rows = self._fresh.pop(robot, (None, []))
         if read != reader:
             rows = await self._database.read(answers.read_outbox, *reader)
-        return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
+        return [row for row in rows if row.op not in MOTION_OPS] if self._emergency.in_force else rows
 
     async def waiting_aborts(self, robot: str, after: int, after_urgent: int) -> set[int]:
         """Return the ids of the Aborts among the robot's messages that :meth:`outbox` would return."""

@@ -13,7 +13,7 @@ from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
 from ...core.messages.base import check_robot_name
 from ...core.messages.positions import link_elsewhere
-from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
+from ...core.messages.robots import MOTIONS, Command, SendPos, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
@@ -208,7 +208,7 @@ class Robots:
         a path to the target first.
         """
         robot = self._find(name)
-        if robot is None or robot.pose is None or not isinstance(message, (SetPosEnd, SetPath)):
+        if robot is None or robot.pose is None or not isinstance(message, MOTIONS):
             return None
         if isinstance(message, SetPosEnd) and robot.asks_path:
             return None

@@ -13,7 +13,7 @@ from ...core.errors import RefusedError, counted
 from ...core.geometry import Polyline
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.queues import QueueState, QueueTask, Share, TakeOver, TaskKind, TaskState, check_path
-from ...core.messages.robots import SetPath, SetPosEnd
+from ...core.messages.robots import MOTIONS, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, because
 from ..model.task_queue import Queue, QueuedTask, return_task
 
@@ -334,7 +334,7 @@ def task_of_command(command: ActiveCommand, offset: Offset, here: Place | None) 
     known.
     """
     message, report = command.message, command.report
-    assert isinstance(message, (SetPath, SetPosEnd))
+    assert isinstance(message, MOTIONS)
     id, begun = _id("kept", report.command), report.steps[0].at
     if isinstance(message, SetPosEnd):
         task = _to_target(id, message, offset)

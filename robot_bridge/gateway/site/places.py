@@ -14,7 +14,7 @@ from ...core.messages.commands import TargetPosition
 from ...core.messages.queues import QueueTask
 from ...core.messages.records import ObservationReport
 from ...core.messages.roads import GetRoute
-from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import MOTIONS, Abort, Command, SetPath, SetPosEnd, SetPosIni
 from ...core.roads.network import Surface
 from ...core.robotmap.model import EncodedMap
 from ...core.sites.fences import Fences
@@ -159,7 +159,7 @@ async def keepout_refusals(
     the place from which the robot drives straight to its target or to the first point of its path; None if it
     does not, or its place is unknown: a robot may leave a keepout, and none may cross one.
     """
-    moving = [number for number, one in enumerate(messages) if isinstance(one, (SetPosEnd, SetPath))]
+    moving = [number for number, one in enumerate(messages) if isinstance(one, MOTIONS)]
     refusals: list[OverridableError | None] = [None] * len(messages)
     if not moving or not site.has_keepouts:
         return refusals

@@ -11,7 +11,16 @@ from dataclasses import replace
 from typing import Any, Generic, Protocol, TypeVar, cast
 
 from ...core.messages.base import LONGEST_LABEL, MessageError, one_line
-from ...core.messages.robots import SendGPS, SendImage, SendPos, SetMap, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import (
+    MOTIONS,
+    SendGPS,
+    SendImage,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+)
 from ...core.messages.safety import Ability
 from ...core.sites.frame import SiteFrame
 from ..base.adapter import Command, Link
@@ -288,7 +297,7 @@ class RosRobot(Generic[Network]):
     async def command(self, command: Command) -> None:
         """Have it accept a command; raises CommandRefusedError."""
         message = command.message
-        if isinstance(message, (SetPosEnd, SetPath)):
+        if isinstance(message, MOTIONS):
             await self._order(command.id, message, command.again)
         elif isinstance(message, SetPosIni):
             self._begin_at(message)

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.base import to_json
-from robot_bridge.core.messages.robots import OpAck, Ready, SendPos, SetObject, Stopped
-from robot_bridge.gateway.fleet.emergency_persistence import HELD_BACK
+from robot_bridge.core.messages.robots import MOTION_OPS, OpAck, Ready, SendPos, SetObject, Stopped
 from robot_bridge.protocol.codec import parse_params
 from tests.support.robots.robot_lives import MindOverSql, Said
 
@@ -214,7 +213,7 @@ class WebSocketRobot(Robot):
     async def _take(self, row):
         """Do what a message says and acknowledge it; return false where the gateway begins anew with all."""
         fleet = self.play.fleet
-        drives = row.op in HELD_BACK
+        drives = row.op in MOTION_OPS
         if drives and not await fleet.outboxes.mark_sending(self.name, row.id):
             self._last[row.urgent] = row.id
             return True

@@ -9,6 +9,7 @@ import pytest
 from sqlalchemy.exc import ProgrammingError
 
 from robot_bridge.core.errors import DataRefusedError, LockedError, StoreError, UncertainError
+from robot_bridge.core.messages.robots import COMMANDS, MOTION_OPS
 from robot_bridge.gateway.fleet import emergency_persistence
 from robot_bridge.gateway.fleet.emergency_persistence import MOST_ALIKE, StopWriter, abort_id
 from robot_bridge.gateway.storage.repositories import emergency_stops
@@ -393,5 +394,5 @@ async def test_a_fleet_without_robots_stores_its_stop(storing_on):
     assert await storing_on.writer._halve([], None, None) == {}
 
 
-def test_only_what_sets_a_robot_in_motion_is_held_back():
-    assert emergency_persistence.HELD_BACK == ("SetPosEnd", "SetPath")
+def test_of_each_command_it_is_known_whether_it_sets_a_robot_in_motion():
+    assert COMMANDS.keys() - {"SetPosIni", "Abort"} == {*MOTION_OPS} == {"SetPosEnd", "SetPath"}
