@@ -76,7 +76,7 @@ class ScheduledRequest(NamedTuple):
 
 
 Settle = Callable[[ScheduledRequest, Exception | None], Coroutine[Any, Any, None]]
-"""Handles a request and sends the operator its outcome; with an exception it only sends that."""
+"""Handles a request and sends the operator its outcome; with an exception only sends that, without a wait."""
 
 
 class RequestScheduler:
@@ -290,6 +290,7 @@ class OperatorSession:
         return request if isinstance(request, EmergencyStop) else None
 
     async def _receive(self, frame: str | bytes) -> None:
+        """Answer or schedule a request; never waits for the operator to read: a stop may come next."""
         call = None
         try:
             call = jsonrpc.decode(frame)
@@ -297,17 +298,21 @@ class OperatorSession:
                 raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, "a desk sends requests only", call.id)
             scheduled = ScheduledRequest(call, decode_desk_request(call.method, call.params), len(frame))
         except Exception as error:
-            await self._connection.send(self._refused(call, error))
+            self._connection.send_without_wait(self._refused(call, error))
             return
         if isinstance(scheduled.request, OWN):
-            await self._settle(scheduled, None)
+            self._connection.send_without_wait(await self._answer(scheduled, None))
         else:
             await self._lanes.submit(scheduled)
 
     async def _settle(self, scheduled: ScheduledRequest, refusal: Exception | None) -> None:
         """Do a request, unless it is refused, and send its outcome."""
+        answer = await self._answer(scheduled, refusal)
+        if refusal is not None:
+            self._connection.send_without_wait(answer)
+            return
         with contextlib.suppress(ConnectionClosed):
-            await self._connection.send(await self._answer(scheduled, refusal))
+            await self._connection.send(answer)
 
     async def _answer(self, scheduled: ScheduledRequest, refusal: Exception | None) -> str:
         try:

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.protocol import OPEN
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
+from ..monitoring import BackgroundTasks
 from .accounts import TokenKind
 
 # --- Frame boundaries in a client's data, and frames that are one whole short message; no I/O
@@ -199,6 +201,8 @@ UNSENT_BYTES = 16_384
 """bytes of a connection that the system holds before they are on their way: a stop is sent behind them."""
 STOP_PATIENCE_S = 0.5
 """seconds that a stop waits for the rest of a long message to a slow client."""
+MOST_UNREAD, MOST_HELD = 1_000_000, 100
+"""bytes of answers that a client leaves unread, and answers held while it is sent a long message, at most."""
 CLOSE_WITHIN = 0.5
 """Seconds that an expelled client has for a clean close."""
 _PING = b"gateway"
@@ -249,6 +253,9 @@ class ClientConnection(ServerConnection):
         """Whether it was cut for a stop."""
         self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = RateLimit(1.0, 1.0)
+        self._held = BackgroundTasks()
+        self._unread = 0
+        """bytes of answers written since the client has stopped reading."""
         self.short_cut = FastPath()
         self.identity: Identity | None = None
         self.address = ""
@@ -312,6 +319,24 @@ class ClientConnection(ServerConnection):
         self.protocol.send_text(text.encode())
         self.send_data()
         return True
+
+    def send_without_wait(self, text: str) -> None:
+        """Send an answer without waiting for the client, whose next message may be a stop.
+
+        The client is cut off when it leaves too many unread.
+        """
+        if self.transport.is_closing():
+            return
+        if self._stuck is not None:
+            self._unread += len(text)
+        if self._unread > MOST_UNREAD or len(self._held) >= MOST_HELD:
+            self._give_up()
+        elif self._held or not self.write_at_once(text):
+            self._held.start(self._send_held(text))
+
+    async def _send_held(self, text: str) -> None:
+        with contextlib.suppress(ConnectionClosed):
+            await self.send(text)
 
     async def send_together(self, texts: Sequence[str]) -> None:
         """Send short messages, in one piece if possible; raises ConnectionClosed."""
@@ -394,7 +419,7 @@ class ClientConnection(ServerConnection):
             if self._messages.consume():
                 yield frame
             elif self._patience.consume():
-                if not await self._refuse(frame):
+                if not self._refuse(frame):
                     yield frame
             else:
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
@@ -447,7 +472,7 @@ class ClientConnection(ServerConnection):
             return "somebody"
         return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
 
-    async def _refuse(self, frame: str | bytes) -> bool:
+    def _refuse(self, frame: str | bytes) -> bool:
         """Refuse a message; return false for one that is accepted all the same."""
         try:
             message = jsonrpc.decode(frame)
@@ -458,7 +483,7 @@ class ClientConnection(ServerConnection):
                 return False
             text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
             if message.id is not None:
-                await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
+                self.send_without_wait(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
         return True
 
     def _check_silence(self) -> None:
@@ -479,6 +504,7 @@ class ClientConnection(ServerConnection):
     def pause_writing(self) -> None:
         """Start waiting for a slow client."""
         super().pause_writing()
+        self._unread = 0
         self._stuck = self.loop.call_later(self._limits.stuck_s, self._give_up)
 
     def resume_writing(self) -> None:

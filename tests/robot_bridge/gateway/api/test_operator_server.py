@@ -1,15 +1,24 @@
-"""News that a desk is told: the newest of each, in the order in which they came; no socket."""
+"""News that a desk is told: the newest of each, in the order in which they came. Nothing delays a stop."""
 
 from __future__ import annotations
 
 import asyncio
 import json
 from contextlib import asynccontextmanager
+from functools import partial
 from types import SimpleNamespace
 
+import pytest
+from websockets.asyncio.client import connect
+from websockets.asyncio.server import serve
+
 from robot_bridge.core.messages.base import Role
+from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.api.operator_server import OperatorSession
+from robot_bridge.gateway.auth.accounts import TokenKind
+from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
 from robot_bridge.gateway.model.events import Listeners
+from tests.support.patience import until
 
 
 class Connection:
@@ -130,3 +139,84 @@ async def test_news_of_a_stop_are_sent_at_once_and_behind_none_that_are_older():
     assert connection.sent.empty()
     connection.hung_up.set()
     await running
+
+
+# --- on a real connection -----------------------------------------------------------------------------------
+
+
+class Desk:
+    """A desk on a socket at the gateway of a yard; ``begun`` are its requests that were begun."""
+
+    def __init__(self, yard, role=Role.OPERATOR, **limits):
+        self.yard, self.role, self.begun = yard, role, []
+        self.limits = LimitSettings(stuck_s=600.0, **limits)
+
+    @asynccontextmanager
+    async def connected(self):
+        options = {"create_connection": partial(ClientConnection, self), "compression": None}
+        async with serve(self._serve, "127.0.0.1", 0, process_request=self._let_in, **options) as server:
+            port = server.sockets[0].getsockname()[1]
+            async with connect(f"ws://127.0.0.1:{port}", compression=None) as self.wire:
+                await (await self.wire.ping())
+                yield self
+                # One that reads nothing would be waited for.
+                self.wire.transport.abort()
+
+    def ask(self, *calls):
+        """Send requests in one piece."""
+        for method, params in calls:
+            text = json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params})
+            self.wire.protocol.send_text(text.encode())
+        self.wire.send_data()
+
+    def read_nothing(self):
+        """Stop reading, and have the gateway send more than lies between."""
+        self.wire.transport.pause_reading()
+        self.connection.write_at_once("x" * 8_000_000)
+        assert self.connection.paused
+
+    def arrived(self, connection):
+        self.connection = connection
+
+    def left(self, _connection):
+        pass
+
+    async def answer(self, request, _operator):
+        self.begun.append(request.method)
+        return {}
+
+    async def _let_in(self, connection, _request):
+        connection.let_in(Identity(TokenKind.OPERATOR, "Ada", None, "s"), 100_000)
+
+    async def _serve(self, connection):
+        journal = SimpleNamespace(note=lambda *_arguments, **_more: None)
+        gate = SimpleNamespace(role=lambda _: self.role, journal=journal)
+        await OperatorSession(self.yard.fleet, connection, gate, self).run()
+
+
+PAN = ("subscribe", {"rate": 1.0})
+STOP = ("emergency_stop", {"command": "stop-number-1"})
+STOPS = [STOP, ("abort", {"command": "abort-01", "robot": "r1"})]
+STOPS += [("send", {"command": "command-1", "robot": "r1", "op": "Abort"})]
+
+
+@pytest.mark.parametrize("before", [PAN, ("no_such", {}), ("resume_queue", {"robot": "r1", "revision": 0})])
+@pytest.mark.parametrize("stop", STOPS, ids=lambda stop: stop[0])
+async def test_a_stop_is_begun_while_the_desk_reads_no_answer(two, stop, before):
+    async with Desk(two).connected() as desk:
+        desk.read_nothing()
+        # A pause overtakes what resumes, which is answered as well.
+        desk.ask(before, before, ("pause_robot", {"robot": "r1"}), stop)
+        await until(lambda: stop[0] in desk.begun)
+        assert desk.connection.paused
+
+
+async def test_a_stop_is_begun_as_its_bytes_arrive_while_the_desk_pans_on_a_slow_line(two):
+    async with Desk(two).connected() as desk:
+        desk.read_nothing()
+        desk.ask(PAN)
+        await until(lambda: two.fleet.counters.desk["subscribe"])
+        assert desk.connection.short_cut.on_the_long_way == 0
+        desk.ask(STOP)
+        await until(lambda: two.fleet.emergency.in_force)
+        assert desk.connection.paused

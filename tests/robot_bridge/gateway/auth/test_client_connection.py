@@ -207,3 +207,75 @@ async def test_little_waits_in_the_system_for_a_client_that_is_slow(host, client
     # What the client has received already is on its way no more.
     received = client.transport.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
     assert sent < received + 2 * client_connection.UNSENT_BYTES
+
+
+def read_nothing(host, client):
+    """Have the client stop reading, and send it more than lies between."""
+    client.transport.pause_reading()
+    host.visitor.write_at_once("x" * 8_000_000)
+    assert host.visitor.paused
+
+
+async def test_who_leaves_too_many_answers_unread_is_cut_off(host, client, monkeypatch):
+    monkeypatch.setattr(client_connection, "MOST_UNREAD", 100_000)
+    read_nothing(host, client)
+    before = host.visitor.transport.get_write_buffer_size()
+    for _ in range(100):
+        host.visitor.send_without_wait("x" * 1000)
+    assert host.visitor.transport.get_write_buffer_size() < before + 110_000
+    assert not host.visitor.transport.is_closing()
+    host.visitor.send_without_wait("x" * 1000)
+    assert host.visitor.transport.is_closing()
+
+
+async def test_what_was_read_counts_no_more(host, client, monkeypatch):
+    monkeypatch.setattr(client_connection, "MOST_UNREAD", 100_000)
+    for _ in range(2):
+        read_nothing(host, client)
+        for _ in range(60):
+            host.visitor.send_without_wait("y" * 1000)
+        reading = asyncio.create_task(read_to_the_end(client))
+        client.transport.resume_reading()
+        await until(lambda: not host.visitor.paused)
+        host.visitor.send_without_wait("end")
+        await reading
+    assert not host.visitor.transport.is_closing()
+
+
+async def read_to_the_end(client):
+    while await client.recv() != "end":
+        pass
+
+
+async def test_answers_during_a_long_message_are_held_in_their_order_and_not_without_end(host, client):
+    sending = asyncio.create_task(host.visitor.send(long_message(host.goes_on)))
+    await until(lambda: host.visitor.send_in_progress is not None)
+    answers = [str(number) for number in range(client_connection.MOST_HELD)]
+    for answer in answers[:-1]:
+        host.visitor.send_without_wait(answer)
+    # Before those that wait have their turn.
+    sending.add_done_callback(lambda _: host.visitor.send_without_wait(answers[-1]))
+    host.goes_on.set()
+    assert len(await client.recv()) == 101 * 30_000
+    assert [await client.recv() for _ in answers] == answers
+    host.goes_on.clear()
+    sending = asyncio.create_task(host.visitor.send(long_message(host.goes_on)))
+    await until(lambda: host.visitor.send_in_progress is not None)
+    for _ in range(client_connection.MOST_HELD + 1):
+        host.visitor.send_without_wait("x")
+    host.goes_on.set()
+    with pytest.raises(ConnectionClosed):
+        await sending
+    assert host.visitor.is_gone
+
+
+async def test_a_refusal_that_nobody_reads_keeps_back_no_later_message(host, client):
+    burst = OpenDoor.limits.robot_burst
+    read_nothing(host, client)
+    call = '{"jsonrpc": "2.0", "id": 1, "method": "Alive"}'
+    for _ in range(burst + 10):
+        await client.send(call)
+    await until(lambda: len(host.came) >= burst)
+    await client.send("after")
+    await until(lambda: host.visitor.short_cut.on_the_long_way == 0)
+    assert host.visitor.paused and not host.visitor.is_gone
