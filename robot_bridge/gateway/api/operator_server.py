@@ -40,7 +40,7 @@ from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
 from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS, AuthGate, check_permission
-from ..auth.client_connection import ClientConnection
+from ..auth.client_connection import ClientConnection, RateLimit
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..fleet.views import ViewWatch
@@ -53,6 +53,9 @@ MOST_WAITING, MOST_ASIDE, MOST_STOPPING = 256, 64, 1000
 """requests of one operator that wait their turn, that wait aside, and that stop robots, at most."""
 MOST_EMERGENCIES = 50
 """emergency stops of one operator handled at the same time; beyond that the connection waits."""
+STOPS_PER_S = 50.0
+"""stops a second, MOST_STOPPING at once, that are accepted beyond a desk's rate limit, of operators who may
+stop robots: ``abort``, ``abort_all``, ``pause_robot`` and a ``send`` of Abort. Emergency stops always are."""
 MOST_BYTES = 4_000_000
 """bytes of one operator's requests that wait, at most in each lane."""
 
@@ -239,12 +242,13 @@ class OperatorSession:
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._watch: ViewWatch | None = None
         self._lanes = RequestScheduler(self._settle)
+        self._stops = RateLimit(STOPS_PER_S, MOST_STOPPING)
 
     async def run(self) -> None:
         """Serve the connection to its end."""
         self._fleet.listeners.add(self)
         self._start("news", self._push_news())
-        self._connection.handle_at_once(self._begin_stop)
+        self._connection.accept_stops(self._begin_stop, self._is_never_refused)
         try:
             async for frame in self._connection:
                 await self._receive(frame)
@@ -288,6 +292,16 @@ class OperatorSession:
         except (MessageError, BridgeError, jsonrpc.FrameError):
             return None
         return request if isinstance(request, EmergencyStop) else None
+
+    def _is_never_refused(self, call: jsonrpc.Call) -> bool:
+        """Return whether a call beyond the rate limit is accepted: see :data:`STOPS_PER_S`."""
+        kind = DESK_REQUESTS.get(call.method)
+        op = call.params.get("op") if isinstance(call.params, dict) else None
+        if kind is None or not commands.stops_robots(kind, op):
+            return False
+        if not self._gate.role(self._connection).includes(kind.least_role):
+            return False
+        return kind is EmergencyStop or self._stops.consume()
 
     async def _receive(self, frame: str | bytes) -> None:
         """Answer or schedule a request; never waits for the operator to read: a stop may come next."""

@@ -154,12 +154,13 @@ class FastPath:
 
     def __init__(self) -> None:
         self._handler: Callable[[bytes], bool] | None = None
+        self._counted = True
         self.on_the_long_way = 0
         self._edges: FrameParser | None = None
 
-    def set_handler(self, handler: Callable[[bytes], bool]) -> None:
-        """Pass messages to ``handler`` from now on."""
-        self._handler = handler
+    def set_handler(self, handler: Callable[[bytes], bool], *, counted: bool = True) -> None:
+        """Pass messages to ``handler`` from now on; beyond a limit as well unless they are ``counted``."""
+        self._handler, self._counted = handler, counted
 
     def begin(self, request: bytes) -> None:
         """Track frames from the end of the request on; ``request`` are its last bytes."""
@@ -175,10 +176,13 @@ class FastPath:
         start, edges = 0, self._edges
         if self._handler is None or edges is None or not edges.between or self.on_the_long_way:
             return 0
-        while (found := short_text(data, start)) is not None and messages.consume():
+        while (found := short_text(data, start)) is not None:
             message, end = found
+            if self._counted and not messages.consume():
+                break
             if not self._handler(message):
-                messages.refund()
+                if self._counted:
+                    messages.refund()
                 break
             start = end
         return start
@@ -195,8 +199,6 @@ log = logging.getLogger(__name__)
 
 CONTROL_FRAMES_PER_S = 20.0
 CONTROL_BURST = 100.0
-NEVER_REFUSED = "emergency_stop"
-"""This request is allowed beyond the rate limit."""
 UNSENT_BYTES = 16_384
 """bytes of a connection that the system holds before they are on their way: a stop is sent behind them."""
 STOP_PATIENCE_S = 0.5
@@ -253,6 +255,8 @@ class ClientConnection(ServerConnection):
         """Whether it was cut for a stop."""
         self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = RateLimit(1.0, 1.0)
+        self._never_refused: Callable[[jsonrpc.Call], bool] = lambda _call: False
+        self._ending: asyncio.Task[None] | None = None
         self._held = BackgroundTasks()
         self._unread = 0
         """bytes of answers written since the client has stopped reading."""
@@ -302,6 +306,16 @@ class ClientConnection(ServerConnection):
     def handle_at_once(self, handler: Callable[[bytes], bool]) -> None:
         """Pass messages to ``handler`` as their bytes arrive; those that it returns false for are queued."""
         self.short_cut.set_handler(handler)
+
+    def accept_stops(
+        self, begin: Callable[[bytes], bool], never_refused: Callable[[jsonrpc.Call], bool]
+    ) -> None:
+        """Pass messages to ``begin`` as their bytes arrive, and queue calls that are ``never_refused``.
+
+        Both beyond the rate limit as well. ``begin`` returns false: each message is then queued or refused.
+        """
+        self.short_cut.set_handler(begin, counted=False)
+        self._never_refused = never_refused
 
     @property
     def is_idle(self) -> bool:
@@ -411,20 +425,23 @@ class ClientConnection(ServerConnection):
         return start
 
     async def __aiter__(self) -> AsyncIterator[Any]:
-        """Yield the messages; those beyond the limit are refused, and finally the connection is closed."""
+        """Yield the messages; those beyond the limit are refused, and finally the connection is closed.
+
+        A stop is yielded all the same if it has arrived before the close, even behind what led to it.
+        """
         async for frame in super().__aiter__():
             if self._expelled:
                 return
             self._last_received_at = self.loop.time()
-            if self._messages.consume():
+            is_beyond = not self._messages.consume()
+            call = _call_in(frame) if is_beyond else None
+            if not is_beyond or (call is not None and self._never_refused(call)):
                 yield frame
             elif self._patience.consume():
-                if not self._refuse(frame):
-                    yield frame
-            else:
+                self._refuse(call)
+            elif self._ending is None:
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
-                await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
-                return
+                self._end(CloseCode.POLICY_VIOLATION, "too many messages a second")
             self.short_cut.on_the_long_way -= 1
 
     def start_keepalive(self) -> None:
@@ -472,19 +489,13 @@ class ClientConnection(ServerConnection):
             return "somebody"
         return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
 
-    def _refuse(self, frame: str | bytes) -> bool:
-        """Refuse a message; return false for one that is accepted all the same."""
-        try:
-            message = jsonrpc.decode(frame)
-        except jsonrpc.FrameError:
-            return True
-        if isinstance(message, jsonrpc.Call):
-            if message.method == NEVER_REFUSED:
-                return False
-            text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
-            if message.id is not None:
-                self.send_without_wait(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
-        return True
+    def _refuse(self, call: jsonrpc.Call | None) -> None:
+        text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
+        if call is not None and call.id is not None:
+            self.send_without_wait(jsonrpc.error(call.id, jsonrpc.TOO_MANY, text))
+
+    def _end(self, code: int, reason: str) -> None:
+        self._ending = self.loop.create_task(self.expel(code, reason))
 
     def _check_silence(self) -> None:
         limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT
@@ -493,9 +504,7 @@ class ClientConnection(ServerConnection):
         due = self._last_received_at + limits.silent_s if self._last_received_at else self.loop.time()
         if due <= self.loop.time():
             log.warning("%s from %s said nothing for too long; closed", self.who, self.address)
-            self._ending = self.loop.create_task(
-                self.expel(CloseCode.POLICY_VIOLATION, "silent for too long")
-            )
+            self._end(CloseCode.POLICY_VIOLATION, "silent for too long")
         else:
             self._silence = self.loop.call_at(due, self._check_silence)
 
@@ -517,6 +526,14 @@ class ClientConnection(ServerConnection):
     def _give_up(self) -> None:
         log.warning("%s from %s takes nothing of what it is sent; cut off", self.who, self.address)
         self.transport.abort()
+
+
+def _call_in(frame: str | bytes) -> jsonrpc.Call | None:
+    try:
+        message = jsonrpc.decode(frame)
+    except jsonrpc.FrameError:
+        return None
+    return message if isinstance(message, jsonrpc.Call) else None
 
 
 def _is_answer(event: Any) -> bool:

@@ -11,9 +11,11 @@ from types import SimpleNamespace
 import pytest
 from websockets.asyncio.client import connect
 from websockets.asyncio.server import serve
+from websockets.frames import Frame, Opcode
 
 from robot_bridge.core.messages.base import Role
 from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.api import operator_server
 from robot_bridge.gateway.api.operator_server import OperatorSession
 from robot_bridge.gateway.auth.accounts import TokenKind
 from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
@@ -43,7 +45,7 @@ class Connection:
         self.sent.put_nowait(json.loads(frame))
         return True
 
-    def handle_at_once(self, handler):
+    def accept_stops(self, handler, _never_refused):
         self.handler = handler
 
     async def __aiter__(self):
@@ -149,6 +151,7 @@ class Desk:
 
     def __init__(self, yard, role=Role.OPERATOR, **limits):
         self.yard, self.role, self.begun = yard, role, []
+        self.answered = 0
         self.limits = LimitSettings(stuck_s=600.0, **limits)
 
     @asynccontextmanager
@@ -158,7 +161,9 @@ class Desk:
             port = server.sockets[0].getsockname()[1]
             async with connect(f"ws://127.0.0.1:{port}", compression=None) as self.wire:
                 await (await self.wire.ping())
+                reading = asyncio.create_task(self._read())
                 yield self
+                reading.cancel()
                 # One that reads nothing would be waited for.
                 self.wire.transport.abort()
 
@@ -168,6 +173,10 @@ class Desk:
             text = json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params})
             self.wire.protocol.send_text(text.encode())
         self.wire.send_data()
+
+    async def _read(self):
+        async for text in self.wire:
+            self.answered += '"id":1' in str(text)
 
     def read_nothing(self):
         """Stop reading, and have the gateway send more than lies between."""
@@ -220,3 +229,64 @@ async def test_a_stop_is_begun_as_its_bytes_arrive_while_the_desk_pans_on_a_slow
         desk.ask(STOP)
         await until(lambda: two.fleet.emergency.in_force)
         assert desk.connection.paused
+
+
+# --- beyond the rate limit ----------------------------------------------------------------------------------
+
+FEW = {"desk_messages_per_s": 0.01, "desk_burst": 3}
+BEYOND = [PAN] * 6
+"""Three are done and three refused; the next one ends the connection."""
+
+
+@pytest.mark.parametrize("stop", [*STOPS, ("abort_all", {}), ("pause_robot", {"robot": "r1"})])
+async def test_a_stop_is_begun_however_much_its_desk_has_sent_before(two, stop):
+    async with Desk(two, **FEW).connected() as desk:
+        desk.ask(*BEYOND)
+        # In a piece of its own, and again behind what ends the connection.
+        await until(lambda: desk.answered == 6)
+        desk.ask(stop)
+        await until(lambda: desk.begun == [stop[0]])
+        assert not desk.connection.is_gone
+        desk.ask(PAN, stop)
+        await until(lambda: desk.connection.is_gone)
+        assert desk.begun == [stop[0]] * 2
+        assert desk.wire.close_code == 1008
+
+
+async def test_a_stop_beyond_the_limit_begins_as_its_bytes_arrive(two):
+    async with Desk(two, **FEW).connected() as desk:
+        desk.ask(*BEYOND)
+        await until(lambda: desk.answered == 6)
+        data = Frame(Opcode.TEXT, stop_call(**STOP[1])).serialize(mask=True)
+        desk.connection.data_received(data)
+        # Without a turn of the loop.
+        assert two.fleet.emergency.in_force
+
+
+async def test_aborts_beyond_the_limit_are_so_many_and_emergency_stops_without_limit(two, monkeypatch):
+    monkeypatch.setattr(operator_server, "STOPS_PER_S", 0.01)
+    monkeypatch.setattr(operator_server, "MOST_STOPPING", 4)
+    async with Desk(two, **FEW).connected() as desk:
+        desk.ask(*BEYOND)
+        await until(lambda: desk.answered == 6)
+        for number in range(10):
+            desk.ask(STOP)
+            await until(lambda number=number: len(desk.begun) == number + 1)
+        desk.ask(*[STOPS[1]] * 5)
+        await until(lambda: desk.connection.is_gone)
+        assert desk.begun == ["emergency_stop"] * 10 + ["abort"] * 4
+
+
+@pytest.mark.parametrize("stop", STOPS, ids=lambda stop: stop[0])
+async def test_who_may_not_stop_robots_is_refused_beyond_the_limit(two, stop):
+    async with Desk(two, Role.VIEWER, **FEW).connected() as desk:
+        desk.ask(*BEYOND, stop)
+        await until(lambda: desk.connection.is_gone)
+        assert desk.wire.close_code == 1008 and desk.begun == []
+
+
+async def test_what_stops_no_robot_is_refused_beyond_the_limit_whatever_it_holds(two):
+    async with Desk(two, **FEW).connected() as desk:
+        desk.ask(*BEYOND, ("send", {"command": "command-1", "robot": "r1", "op": "emergency_stop"}))
+        await until(lambda: desk.connection.is_gone)
+        assert desk.wire.close_code == 1008 and desk.begun == []

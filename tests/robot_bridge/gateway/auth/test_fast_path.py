@@ -85,3 +85,14 @@ def test_what_is_too_much_is_left_to_be_refused(short_cut, taken):
     data = b"".join(text(f"p{number}") for number in range(5))
     assert len(data) - short_cut.handle_messages(data, bucket) == 3 * len(text("p0"))
     assert taken == ["p0", "p1"]
+
+
+def test_what_counts_as_no_message_is_handed_on_beyond_the_limit(taken):
+    way, none = FastPath(), RateLimit(0.001, 0.5)
+    way.set_handler(taken)
+    way.begin(REQUEST)
+    assert way.handle_messages(text("p1"), none) == 0
+    assert taken == []
+    way.set_handler(taken, counted=False)
+    assert way.handle_messages(text("p1"), none) == len(text("p1"))
+    assert taken == ["p1"]
