@@ -6,6 +6,7 @@ Each is read when it has changed: see :mod:`.followers`.
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Iterable, Mapping
 from itertools import islice
 from typing import Generic, Protocol, TypeVar
@@ -13,6 +14,7 @@ from typing import Generic, Protocol, TypeVar
 import msgspec
 
 from ...core.errors import StoreError
+from ...core.logs import log_and_continue
 from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport
 from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
@@ -36,6 +38,8 @@ from ..storage.repositories import commands, queues, records
 from .bus import EVERYBODY, own_subject
 from .followers import LOOK_S, ChangeNumbers, Follower, LookSchedule
 from .messages import MOST_NAMED, Exchange, QueuesChanged
+
+log = logging.getLogger(__name__)
 
 PIECE = 50
 """steps sent to operators before other tasks have their turn: some milliseconds."""
@@ -466,4 +470,6 @@ class QueueFeed:
             names, self._changed = sorted(self._changed), set()
             for begin in range(0, len(names), MOST_NAMED):
                 some = names[begin : begin + MOST_NAMED]
-                self._exchange.send(EVERYBODY, QueuesChanged(self._exchange.gateway, some))
+                # Nobody awaits this task: after an error queues would be named no more.
+                with log_and_continue(log, "naming changed queues to other gateways"):
+                    self._exchange.send(EVERYBODY, QueuesChanged(self._exchange.gateway, some))

@@ -9,14 +9,18 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import logging
 import secrets
 from collections.abc import Mapping
 from typing import Protocol
 
+from ...core.logs import log_and_continue
 from ..monitoring import until_tick, wait_at_most
 from .bus import EVERYBODY
 from .membership import Membership
 from .messages import Beat, Exchange, Wake, WakeTopic
+
+log = logging.getLogger(__name__)
 
 LOOK_S = 1.0
 """seconds between checks while it is unknown whether anything has changed."""
@@ -157,4 +161,6 @@ class Follower:
             await self._changed.wait()
             await asyncio.sleep(WAKE_S)
             self._changed.clear()
-            self._exchange.wake(self._topic)
+            # Nobody awaits this task: after an error no gateway would be woken any more.
+            with log_and_continue(log, "waking other gateways for %s", self._topic):
+                self._exchange.wake(self._topic)

@@ -17,6 +17,7 @@ from sqlalchemy import URL, Connection, Engine
 from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError, SQLAlchemyError
 
 from ...core.errors import DataRefusedError, LockedError, StoreError, UncertainError
+from ...core.logs import log_and_continue
 from ..monitoring import until_tick
 from . import revisions
 from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
@@ -143,6 +144,8 @@ class DatabaseWorker:
         self._offences = offences
         self._jobs: SimpleQueue[DatabaseJob | None] = SimpleQueue()
         self._connection: Connection | None = None
+        self._driver: Any = None
+        """the driver's own connection: another thread must not ask SQLAlchemy's, which may connect again."""
         self._since: float | None = None
         self._locked_until = 0.0
         self._lock = threading.Lock()
@@ -173,10 +176,10 @@ class DatabaseWorker:
     def interrupt_if_stuck(self) -> None:
         """Cut the connection when the database has not answered for longer than a server's own limit."""
         with self._lock:
-            if self._since is None or self._connection is None or self._patience is None:
+            if self._since is None or self._driver is None or self._patience is None:
                 return
             if time.monotonic() - self._since > self._patience + 1:
-                self._dialect.interrupt(self._connection.connection.driver_connection)
+                self._dialect.interrupt(self._driver)
 
     def _serve(self) -> None:
         while (job := self._jobs.get()) is not None:
@@ -310,10 +313,13 @@ class DatabaseWorker:
         return done
 
     def _connected(self) -> Connection:
+        if self._connection is not None and self._connection.invalidated:
+            # It would connect again by itself, as a connection that nobody watches.
+            self._drop()
         if self._connection is None:
             connection = self._engine.connect()
             with self._lock:
-                self._connection = connection
+                self._connection, self._driver = connection, connection.connection.driver_connection
             self.session += 1
             self.backend = self._dialect.backend(connection)
         self._since = time.monotonic()
@@ -338,7 +344,7 @@ class DatabaseWorker:
         """Discard the connection, whatever state it is in."""
         with self._lock:
             connection, self._connection = self._connection, None
-            self._since = None
+            self._driver = self._since = None
         if connection is not None:
             with contextlib.suppress(SQLAlchemyError):
                 connection.close()
@@ -529,7 +535,8 @@ class Database:
         while True:
             await asyncio.sleep(until_tick(WATCH_INTERVAL_S))
             for worker in (self._worker, self._aside):
-                worker.interrupt_if_stuck()
+                with log_and_continue(log, "cutting the connection to a database that does not answer"):
+                    worker.interrupt_if_stuck()
 
 
 def start_task(work: Coroutine[Any, Any, T]) -> asyncio.Task[T]:

@@ -377,9 +377,11 @@ class LinkClient:
     async def _watch_memory(self) -> None:
         while True:
             await asyncio.sleep(MEMORY_EVERY)
-            await self._memory.recover()
-            if self._is_welcome and self._memory.fault != self._reported_fault:
-                self._send_status()
+            # Nobody awaits this task: after an error the memory would be written no more.
+            with log_and_continue(log, "writing the link's memory again"):
+                await self._memory.recover()
+                if self._is_welcome and self._memory.fault != self._reported_fault:
+                    self._send_status()
 
     def _send_ready(self, robot: LinkedRobot) -> None:
         if not self._is_welcome or self._robots.get(robot.name) is not robot or robot.admitted:

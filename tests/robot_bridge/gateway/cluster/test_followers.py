@@ -206,3 +206,20 @@ async def test_what_goes_on_by_itself_is_looked_at_each_second(fleet, monkeypatc
     followed.goes_on = True
     await until(lambda: followed.looks == 3)
     task.cancel()
+
+
+async def test_a_wake_that_fails_prevents_no_later_one(fleet, caplog):
+    followed, place = Followed(), fleet.places["a"]
+    wakes, follower = [], Follower("plans", followed, place.exchange, place.numbers)
+
+    def publish(_subject, _content):
+        wakes.append(len(wakes))
+        return 1 / len(wakes[1:])
+
+    place.publish = publish
+    task = asyncio.create_task(follower.run())
+    for number in (1, 2):
+        follower.note_change()
+        await until(lambda number=number: len(wakes) == number)
+    task.cancel()
+    assert "waking other gateways for plans failed" in caplog.text

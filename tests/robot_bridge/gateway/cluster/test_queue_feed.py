@@ -15,12 +15,12 @@ from robot_bridge.gateway.cluster import feeds, followers
 from robot_bridge.gateway.cluster.feeds import QueueFeed
 from robot_bridge.gateway.cluster.followers import ChangeNumbers
 from robot_bridge.gateway.cluster.messages import Exchange
-from robot_bridge.gateway.model.events import EventBus, Listeners
+from robot_bridge.gateway.model.events import EventBus, Listeners, QueueReported
 from robot_bridge.gateway.model.robots import Robot, Robots
 from robot_bridge.gateway.model.task_queue import Queue, QueuedTask
 from robot_bridge.gateway.storage.database import Database, read_address
 from robot_bridge.gateway.storage.repositories import queues
-from tests.support.patience import BUSY
+from tests.support.patience import BUSY, until
 
 HAS_OWNER = text("insert into robot_owners (robot, gw, run, fence) values ('r1', 'south', 'run', 1)")
 
@@ -98,3 +98,32 @@ async def test_what_a_failed_look_would_have_found_waits_for_no_other_change(pla
             await following
     async with running(place.feed):
         await place.until(lambda: place.heard == [("queue", "r1", 1)])
+
+
+class NoDatabase:
+    """One that holds nothing."""
+
+    async def read(self, _work, *_arguments):
+        return {}
+
+
+class FailingBus:
+    """One whose first message fails."""
+
+    connected, sent = True, 0
+
+    def publish(self, _subject, _content):
+        self.sent += 1
+        return 1 / (self.sent - 1)
+
+
+async def test_a_queue_that_cannot_be_named_to_the_others_keeps_back_no_later_one(caplog):
+    bus, events = FailingBus(), EventBus()
+    exchange = Exchange("a", b"k" * 32, [bus])
+    numbers = ChangeNumbers(exchange, Alone())
+    feed = QueueFeed(Robots(), None, Listeners(), events, exchange, numbers, NoDatabase())
+    async with running(feed):
+        for number in (1, 2):
+            events.publish(QueueReported(f"r{number}"))
+            await until(lambda number=number: bus.sent == number)
+    assert "naming changed queues to other gateways failed" in caplog.text

@@ -13,13 +13,15 @@ from websockets.frames import CloseCode
 from robot_bridge.core.clock import ManualClock, StandstillWatch
 from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.messages.robots import SetPosEnd
-from robot_bridge.links.base import link_websocket
+from robot_bridge.links.base import client, link_websocket
+from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.link_websocket import LinkWebSocket
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import CompletedCall, LinkMemory
 from robot_bridge.protocol import jsonrpc
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine, ObedientAdapter
+from tests.support.patience import until
 
 SITE = {
     "id": "s",
@@ -393,3 +395,20 @@ async def test_of_a_stop_that_was_not_confirmed_it_is_not_said_that_the_robot_wa
     (ended,) = [frame["params"] for frame in gateway.frames if frame.get("method") == "OpAck"]
     assert (ended["id"], ended["ok"]) == (7, False)
     assert "not confirmed" in ended["reason"] and "its server does not answer" in ended["reason"]
+
+
+async def test_a_memory_that_fails_without_foresight_is_written_again_later(tmp_path, monkeypatch, caplog):
+    monkeypatch.setattr(client, "MEMORY_EVERY", 0.01)
+    link = LinkOnTheLine(SimpleNamespace(address="ws://127.0.0.1:1"), tmp_path)
+    await asyncio.to_thread(link.kill)
+    attempts, memory = [], LinkMemory(link._settings.memory_file)
+
+    async def recover():
+        attempts.append(1)
+        1 / (len(attempts) - 1)
+
+    monkeypatch.setattr(memory, "recover", recover)
+    running = asyncio.create_task(LinkClient(link._settings, link.adapter, memory).run())
+    await until(lambda: len(attempts) > 1)
+    running.cancel()
+    assert "writing the link's memory again failed" in caplog.text

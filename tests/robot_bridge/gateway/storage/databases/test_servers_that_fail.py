@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import threading
 import time
 from functools import partial
 
@@ -12,10 +13,12 @@ from sqlalchemy import event, insert, select
 
 from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
 from robot_bridge.gateway.commands.persistence import write_bare_aborts
+from robot_bridge.gateway.storage import database as database_module
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.schema import rr
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.frozen_server import frozen
+from tests.support.patience import BUSY, until
 
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 
@@ -236,6 +239,61 @@ def test_a_connection_that_is_lost_before_it_is_cut_ends_no_watch(url):
         driver = connection.connection.driver_connection
         driver.close()
         dialect.interrupt(driver)
+
+
+@pytest.fixture
+async def on_a_file(sqlite_url, monkeypatch):
+    """A database whose every statement takes too long, by the watch."""
+    monkeypatch.setattr(database_module, "WATCH_INTERVAL_S", 0.01)
+    database = Database(sqlite_url)
+    await database.open()
+    database._worker._patience = -2.0
+    yield database
+    await database.close()
+
+
+class LostConnection:
+    """Work during which the connection is lost, and whose thread then waits until it is ``cut``."""
+
+    def __init__(self):
+        self.driver, self.was_cut = None, threading.Event()
+
+    def __call__(self, connection):
+        self.driver = connection.connection.driver_connection
+        connection.invalidate()
+        assert self.was_cut.wait(10 * BUSY)
+
+    def cut(self, driver):
+        if driver is self.driver:
+            self.was_cut.set()
+
+
+async def test_a_connection_that_the_thread_has_seen_lost_is_cut_all_the_same(on_a_file, monkeypatch, caplog):
+    """SQLAlchemy raises for such a connection, or makes another one in the loop that asks for it."""
+    work = LostConnection()
+    monkeypatch.setattr(on_a_file.dialect, "interrupt", work.cut)
+    sessions = on_a_file.session
+    with pytest.raises(StoreError):
+        await on_a_file.run(work)
+    assert work.was_cut.is_set() and not caplog.records
+    assert await on_a_file.read(names) == []
+    assert on_a_file.session == sessions + 1
+
+
+async def test_a_round_of_the_watch_that_fails_is_followed_by_others(on_a_file, monkeypatch, caplog):
+    rounds = []
+
+    def interrupt(driver):
+        rounds.append(driver)
+        1 / (len(rounds) - 1)
+
+    monkeypatch.setattr(on_a_file.dialect, "interrupt", interrupt)
+    goes_on = threading.Event()
+    work = asyncio.create_task(on_a_file.run(lambda _connection: goes_on.wait(10 * BUSY)))
+    await until(lambda: len(rounds) > 1)
+    goes_on.set()
+    await work
+    assert "cutting the connection to a database that does not answer failed" in caplog.text
 
 
 @SERVERS
