@@ -111,10 +111,10 @@ class FleetController(QObject):
         self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
         self.checks.found.connect(self._found)
         self.drafts.changed.connect(self._drafted)
-        self._rules.changed.connect(self.checks.begin_anew)
+        self._rules.changed.connect(self.checks.restart_checks)
         self.target_ways = TargetRoutes(self.drafts, self.checks, state, self.sender, self)
         self.sending = CommandSender(self.drafts, self.checks, self.target_ways, self.orders, self)
-        self._rules.changed.connect(self.sending.outgoing.begin_anew)
+        self._rules.changed.connect(self.sending.outgoing.restart_checks)
         for receiver in (self.target_ways, self.preview, self.view, self.search, self.orders):
             self.sender.add_receiver(receiver)
         self.orders.answered.connect(lambda _: self.emergency_changed.emit())
@@ -254,9 +254,9 @@ class FleetController(QObject):
 
     def _check_draft_again(self) -> None:
         """Check the draft on the map again: the site may have been published again meanwhile."""
-        self.sending.outgoing.begin_anew()
+        self.sending.outgoing.restart_checks()
         if self.checks.is_under_way:
-            self.checks.begin_anew()
+            self.checks.restart_checks()
         elif self.drafts.draft is not None:
             self._try(lambda: self.checks.again(lambda _: None))
 

@@ -83,7 +83,7 @@ def conflict_topic(robot: str, other: str) -> Topic:
     return Topic("conflict", frozenset((robot, other)))
 
 
-class QueueStand(NamedTuple):
+class QueueCondition(NamedTuple):
     """The state of a queue that a message is about; ``state`` (a QueueState's, empty without a queue) and
     ``task`` where they count."""
 
@@ -92,14 +92,14 @@ class QueueStand(NamedTuple):
     task: str | None = None
 
 
-def queue_topic(stand: QueueStand) -> Topic:
+def queue_topic(stand: QueueCondition) -> Topic:
     """Return the topic of a queue: it ends when its state changes, or its task is no longer pending."""
     return Topic("queue", stand)
 
 
 def queue_state_topic(robot: str, queue: QueueReport | None) -> Topic:
     """Return the topic of a robot's queue, None without one: it ends when its state changes."""
-    return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
+    return queue_topic(QueueCondition(robot, state="" if queue is None else queue.state.value))
 
 
 def observation_topic(number: int) -> Topic:
@@ -204,7 +204,7 @@ class MessageEndings(QObject):
     def _queues_changed(self) -> None:
         """End messages about queues that were paused or continued since, or tasks done since."""
 
-        def is_over(stand: QueueStand) -> bool:
+        def is_over(stand: QueueCondition) -> bool:
             queue = self._state.queues.get(stand.robot)
             if stand.state is not None:
                 return stand.state != ("" if queue is None else queue.state.value)

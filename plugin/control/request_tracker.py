@@ -217,7 +217,7 @@ class RequestTracker(QObject):
         """
         command = str(uuid.uuid4())
         order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock.steady())
-        return self._put(order, tr("ABORT ALL"))
+        return self._submit(order, tr("ABORT ALL"))
 
     @property
     def awaits_stop(self) -> bool:
@@ -230,7 +230,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         stop = str(uuid.uuid4())
-        key = self._put(
+        key = self._submit(
             OperatorRequest(
                 stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock.steady(), lasting=True
             ),
@@ -246,7 +246,7 @@ class RequestTracker(QObject):
         """
         params = to_json(ClearEmergencyStop(reason or None, stop))
         order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock.steady())
-        return self._put(order, tr("Clear emergency stop"))
+        return self._submit(order, tr("Clear emergency stop"))
 
     def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
         """Send ``request`` to the gateway, described to the operator by ``words``, and return its key.
@@ -277,7 +277,7 @@ class RequestTracker(QObject):
         draft: PendingCommand | None = None,
     ) -> str:
         """Send a request that already has its key, and return that; otherwise as :meth:`ask`."""
-        return self._put(order, words, draft, topics)
+        return self._submit(order, words, draft, topics)
 
     def _order(self, request: Any, lasting: bool = False) -> OperatorRequest:
         return OperatorRequest(
@@ -334,9 +334,9 @@ class RequestTracker(QObject):
         command = str(uuid.uuid4())
         send = Send(command, robot, op, params, override=override)
         order = OperatorRequest(command, Send.method, to_json(send), self._clock.steady())
-        return self._put(order, words, draft)
+        return self._submit(order, words, draft)
 
-    def _put(
+    def _submit(
         self,
         order: OperatorRequest,
         words: str,

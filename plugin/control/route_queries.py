@@ -60,7 +60,7 @@ class RouteQuestion:
     start: Point | None
     goal: Point
     taken: bool = False
-    wishes: RoutePreferences = SHORTEST
+    preferences: RoutePreferences = SHORTEST
 
 
 class RouteQuery(QObject):
@@ -88,7 +88,7 @@ class RouteQuery(QObject):
         self._pending: tuple[str, RouteQuestion, float] | None = None
         self._next: RouteQuestion | None = None
         self.route: RouteReport | None = None
-        self.wishes = SHORTEST
+        self.preferences = SHORTEST
         """The preferences for that route."""
         self.why_not = ""
         """Why there is no route to the mouse."""
@@ -164,7 +164,7 @@ class RouteQuery(QObject):
             self._next = None
 
     def _show(self, question: RouteQuestion, route: RouteReport | None, why_not: str) -> None:
-        self.route, self.wishes, self.why_not = route, question.wishes, why_not
+        self.route, self.preferences, self.why_not = route, question.preferences, why_not
         self.shown.emit()
         if question.taken and self.route is not None:
             self.answered.emit(question, self.route)
@@ -177,7 +177,7 @@ class RouteQuery(QObject):
             *question.goal,
             robot=question.robot if from_robot else None,
             start=question.start,
-            **_restrictions(question.wishes),
+            **_restrictions(question.preferences),
         )
         key = f"route-{id(self)}-{next(self._numbers)}"
         self._sender.submit(OperatorRequest(key, request.method, to_json(request), self._clock.steady()))
@@ -202,12 +202,12 @@ def _click_unanswered() -> str:
     )
 
 
-def _restrictions(wishes: RoutePreferences) -> dict[str, Any]:
+def _restrictions(preferences: RoutePreferences) -> dict[str, Any]:
     """Return preferences as the query's parameters."""
-    return {**asdict(wishes), "surfaces": list(wishes.surfaces) or None}
+    return {**asdict(preferences), "surfaces": list(preferences.surfaces) or None}
 
 
-def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = "; ") -> str:
+def route_in_words(route: RouteReport, preferences: RoutePreferences, apart: str = "; ") -> str:
     """Return a route's length, time and surfaces, its preferences, and what is not as it should be.
 
     ``apart`` separates these.
@@ -230,8 +230,8 @@ def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = ";
         else [surface for _, surface in surfaces]
     )
     text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
-    if wishes.in_words():
-        text += apart + ", ".join(wishes.in_words())
+    if preferences.in_words():
+        text += apart + ", ".join(preferences.in_words())
     if route.tight:
         text += apart + tr("corners tighter than the robot turns: {tight}", tight=len(route.tight))
     return text + apart + route.note if route.note else text

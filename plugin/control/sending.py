@@ -65,7 +65,7 @@ class OutgoingCommands(QObject):
             self._check_first()
         self.changed.emit()
 
-    def begin_anew(self) -> None:
+    def restart_checks(self) -> None:
         """Discard the findings so far: a layer has changed under the check."""
         if self._waiting:
             self._check_first()

@@ -87,16 +87,16 @@ class ValidationRunner(QObject):
 
         :raises FleetError: when it cannot be checked; what was on the board stays then.
         """
-        self._put(draft, self._board.set_command)
+        self._check_on_board(draft, self._board.set_command)
 
     def amend(self, draft: PendingCommand) -> None:
         """Replace the draft on the board by ``draft``, whose way has changed; check it as ``set_command``.
 
         :raises FleetError: as :meth:`set_command`.
         """
-        self._put(draft, self._board.renew)
+        self._check_on_board(draft, self._board.renew)
 
-    def _put(self, draft: PendingCommand, place: Callable[[PendingCommand], None]) -> None:
+    def _check_on_board(self, draft: PendingCommand, place: Callable[[PendingCommand], None]) -> None:
         before, ordered = (self._draft, self._afresh, self._is_put, self._then), self._ordered
         self._draft, self._afresh, self._is_put, self._then = draft, False, True, None
         try:
@@ -137,7 +137,7 @@ class ValidationRunner(QObject):
             self.progressed.emit()
         return had_order
 
-    def begin_anew(self) -> None:
+    def restart_checks(self) -> None:
         """Discard the findings so far: a layer has changed under the check."""
         if self._draft is not None:
             self._slices.stop()

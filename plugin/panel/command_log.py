@@ -62,7 +62,7 @@ class OlderCommands(QObject):
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
-        self._wishes: dict[str, HistoryRequest] = {}
+        self._requests: dict[str, HistoryRequest] = {}
         """By the keys of the queries that are not answered yet."""
         desk.orders.answered.connect(self._answered)
         desk.state.updated.connect(self._watch)
@@ -70,45 +70,45 @@ class OlderCommands(QObject):
 
     def ask(self, robots: frozenset[str] | None) -> None:
         """Request the commands of ``robots``, None for all."""
-        wish = HistoryRequest(
+        request = HistoryRequest(
             frozenset(report.command for report in self._desk.state.commands), self._desk.clock.steady()
         )
         try:
             # For very many robots the newest commands of all will do: the log holds no more.
             for robot in sorted(robots) if robots and len(robots) <= MOST_REQUESTS else [None]:
-                self._wishes[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
-                wish.waiting += 1
+                self._requests[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = request
+                request.waiting += 1
         except FleetError as error:
-            wish.is_refused = True
+            request.is_refused = True
             self._desk.warning.emit(str(error))
             return
         # A repeated request is not reported twice, should the gateway answer after all.
-        self._wishes = {key: one for key, one in self._wishes.items() if not one.is_overdue}
+        self._requests = {key: one for key, one in self._requests.items() if not one.is_overdue}
 
     def _answered(self, answer: RequestResult) -> None:
-        wish = self._wishes.pop(answer.order.key, None)
-        if wish is None:
+        request = self._requests.pop(answer.order.key, None)
+        if request is None:
             return
-        wish.waiting -= 1
+        request.waiting -= 1
         if answer.error is not None:
-            if not wish.is_refused:
+            if not request.is_refused:
                 self._desk.warning.emit(tr("Older commands: {why}", why=answer.error))
-            wish.is_refused = True
+            request.is_refused = True
         else:
-            self._count_new(_commands_in(answer), wish)
-        if wish.waiting == 0 and not wish.is_refused:
-            self._desk.info.emit(_in_words(wish))
+            self._count_new(_commands_in(answer), request)
+        if request.waiting == 0 and not request.is_refused:
+            self._desk.info.emit(_in_words(request))
 
     def _watch(self) -> None:
         """Report a request that waits too long for its answers, even if the link is lost."""
         now = self._desk.clock.steady()
         late = {
-            id(wish): wish
-            for wish in self._wishes.values()
-            if not wish.is_overdue and now - wish.requested_at > SLOW_AFTER
+            id(request): request
+            for request in self._requests.values()
+            if not request.is_overdue and now - request.requested_at > SLOW_AFTER
         }
-        for wish in late.values():
-            wish.is_overdue = True
+        for request in late.values():
+            request.is_overdue = True
             self._desk.warning.emit(
                 tr(
                     "Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once "
@@ -120,13 +120,13 @@ class OlderCommands(QObject):
     def _site_changed(self) -> None:
         if len(self._desk.state.commands) == 0:
             # The link leads to other robots now: requests to the gateway before are dropped.
-            self._wishes.clear()
+            self._requests.clear()
 
-    def _count_new(self, notices: list[str], wish: HistoryRequest) -> None:
+    def _count_new(self, notices: list[str], request: HistoryRequest) -> None:
         # The cache has stored them by now, and dropped the oldest where it was full.
         kept = [command for command in notices if command in self._desk.state.commands]
-        wish.came += sum(command not in wish.known for command in kept)
-        wish.ends_here = wish.ends_here or len(notices) >= OLDER or len(kept) < len(notices)
+        request.came += sum(command not in request.known for command in kept)
+        request.ends_here = request.ends_here or len(notices) >= OLDER or len(kept) < len(notices)
 
 
 def _commands_in(answer: RequestResult) -> list[str]:
@@ -134,13 +134,13 @@ def _commands_in(answer: RequestResult) -> list[str]:
     return [values["command"] for values in (answer.result or {}).get("commands", ())]
 
 
-def _in_words(wish: HistoryRequest) -> str:
+def _in_words(request: HistoryRequest) -> str:
     came = (
-        tr_count(wish.came, "1 older command came.", "%n older commands came.")
-        if wish.came
+        tr_count(request.came, "1 older command came.", "%n older commands came.")
+        if request.came
         else tr("No older commands came.")
     )
-    if wish.ends_here:
+    if request.ends_here:
         end = tr(
             "The log reaches no further back: the newest {asked} of each chosen robot, or of all, are asked "
             "for, and {kept} kept. Older ones are in the gateway's database.",

@@ -226,7 +226,7 @@ def _tools(actions: Actions) -> QGridLayout:
     for column, action in enumerate((actions.select, actions.follow, actions.abort)):
         grid.addWidget(tool_button(action), 0, 2 * column, 1, 2)
     road_route = tool_button(actions.road_route)
-    road_route.addAction(actions.way_wishes)
+    road_route.addAction(actions.route_preferences)
     road_route.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
     for column, button in enumerate((tool_button(actions.cone), road_route, tool_button(actions.route))):
         grid.addWidget(button, 1, 2 * column, 1, 2)

@@ -32,7 +32,7 @@ from ...robot_bridge.core.messages.queues import (
     TaskState,
 )
 from ..control.fleet_controller import FleetController
-from ..control.messages import QueueStand, Topic, draft_topic, queue_state_topic, queue_topic
+from ..control.messages import QueueCondition, Topic, draft_topic, queue_state_topic, queue_topic
 from ..control.pending_command import PendingCommand
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.state_words import (
@@ -153,7 +153,7 @@ class QueueEdits(QObject):
         return queue_state_topic(robot, self._desk.state.queues.get(robot))
 
     def _waiting(self, robot: str, task: str) -> Topic:
-        return queue_topic(QueueStand(robot, task=task))
+        return queue_topic(QueueCondition(robot, task=task))
 
     def _change(
         self, request: QueueRequest, words: str, *topics: Topic, draft: PendingCommand | None = None

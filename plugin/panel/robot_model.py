@@ -379,7 +379,7 @@ class RobotModel(QAbstractTableModel):
 
     def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
         self._sorted_by = (column, order)
-        self._put(self._sorted_rows())
+        self._apply_order(self._sorted_rows())
 
     def show(self, moment: float) -> None:
         """Show the state at ``moment`` of the desk's clock."""
@@ -394,7 +394,7 @@ class RobotModel(QAbstractTableModel):
             self.endResetModel()
             return
         self._fleet = fleet
-        self._put(self._sorted_rows())
+        self._apply_order(self._sorted_rows())
 
     def count(self) -> int:
         """Return the number of robots, listed or not."""
@@ -419,7 +419,7 @@ class RobotModel(QAbstractTableModel):
         column, order = self._sorted_by
         return self._fleet.sorted(rows, TITLES[max(0, column)], order == Qt.SortOrder.DescendingOrder)
 
-    def _put(self, order: Rows) -> None:
+    def _apply_order(self, order: Rows) -> None:
         if np.array_equal(order, self._order):
             self._row_at = _inverse(order, len(self._fleet))
             if len(order):

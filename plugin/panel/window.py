@@ -198,7 +198,7 @@ class FleetWindow(QObject):
         actions.abort_all.triggered.connect(desk.abort_all)
         actions.emergency.triggered.connect(desk.emergency_stop)
         actions.clear_emergency.triggered.connect(self._ask_to_clear)
-        actions.way_wishes.triggered.connect(self._ask_for_ways)
+        actions.route_preferences.triggered.connect(self._ask_for_ways)
         desk.emergency_changed.connect(self._show_emergency)
         self.dock.table.zoom_requested.connect(self.view.zoom_to)
         self.dock.log.place_requested.connect(self.view.show_place)
@@ -265,8 +265,8 @@ class FleetWindow(QObject):
             self.dock.setUserVisible(True)
 
     def _ask_for_ways(self) -> None:
-        dialog = RoutePreferencesDialog(self._road_route.wishes, self._iface.mainWindow())
-        dialog.confirmed.connect(self._road_route.lead_so)
+        dialog = RoutePreferencesDialog(self._road_route.preferences, self._iface.mainWindow())
+        dialog.confirmed.connect(self._road_route.set_preferences)
         dialog.open()
 
     def _ask_to_clear(self) -> None:

@@ -235,7 +235,7 @@ class PlanEditor(QObject):
                 self._put,
             )
 
-    def _put(self, draft: PlanProposal) -> None:
+    def _set_draft(self, draft: PlanProposal) -> None:
         self.draft = draft
 
     def _made(

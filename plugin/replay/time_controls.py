@@ -113,13 +113,13 @@ class ReplayClock(QObject):
         self.controller.setFrameDuration(QgsInterval(self._step))
         self.seek(moment)
         if self.controller.currentFrameNumber() == 0:
-            self._put(self.since)
+            self._show_moment(self.since)
 
     def _updated(self, shown: QgsDateTimeRange) -> None:
         if self.is_set and shown.begin().isValid():
-            self._put(shown.begin().toMSecsSinceEpoch() / 1000.0)
+            self._show_moment(shown.begin().toMSecsSinceEpoch() / 1000.0)
 
-    def _put(self, moment: float) -> None:
+    def _show_moment(self, moment: float) -> None:
         self.moment = min(max(moment, self.since), self.until)
         self.moved.emit(self.moment)
 

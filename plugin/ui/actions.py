@@ -30,7 +30,7 @@ class Actions(QObject):
         self._make_for_roads()
         self._make_for_stopping()
         self.off_toolbar = (
-            self.way_wishes,
+            self.route_preferences,
             self.undo,
             self.redo,
             self.reverse,
@@ -42,7 +42,7 @@ class Actions(QObject):
         self.for_drafts = (
             self.cone,
             self.road_route,
-            self.way_wishes,
+            self.route_preferences,
             self.route,
             self.start,
             self.coordinates,
@@ -189,7 +189,7 @@ class Actions(QObject):
             ),
             checkable=True,
         )
-        self.way_wishes = self._made(
+        self.route_preferences = self._made(
             "fleet_way_wishes",
             tr("Ways on roads…"),
             "route_on_roads.svg",

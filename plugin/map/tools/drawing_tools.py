@@ -271,7 +271,7 @@ class RoutePreview(QObject):
         event: QgsMapMouseEvent,
         robot: str | None,
         start: Point | None,
-        wishes: RoutePreferences = SHORTEST,
+        preferences: RoutePreferences = SHORTEST,
     ) -> None:
         """Show the route from ``start``, or from the robot, to the mouse."""
         if self._mouse is None:
@@ -281,7 +281,7 @@ class RoutePreview(QObject):
             return
         try:
             goal = self._desk.site_to_canvas.transform().to_site(event.mapPoint())
-            self._question = RouteQuestion(robot, start, goal, wishes=wishes)
+            self._question = RouteQuestion(robot, start, goal, preferences=preferences)
             self._desk.preview.want(self._question)
         except (NotSentError, MapTransformError):
             # A click shows the error; a moving mouse should not.
@@ -339,7 +339,7 @@ class RoutePreview(QObject):
         route = preview.route
         if self._mouse is None:
             return
-        text = preview.why_not if route is None else route_in_words(route, preview.wishes, apart="\n")
+        text = preview.why_not if route is None else route_in_words(route, preview.preferences, apart="\n")
         QToolTip.showText(self._mouse + BESIDE, text, self._desk.canvas)
         if route is not None:
             self._begins = route.points[0]
@@ -451,13 +451,13 @@ class StartTool(DrawingTool):
         self._try(lambda: self._drawn(pressed, event.mapPoint()))
 
     def clicked(self, point: Point) -> None:
-        self._put(point, None)
+        self._set_start(point, None)
 
     def key(self, event: QKeyEvent) -> bool:
         draft = self.draft
         if draft is None or not is_arrow_move(event):
             return super().key(event)
-        self._try(lambda: self._put(moved_by_arrow(event, self.desk, draft.points[0]), draft.theta))
+        self._try(lambda: self._set_start(moved_by_arrow(event, self.desk, draft.points[0]), draft.theta))
         return True
 
     def _drawn(self, pressed: QPoint, end: QgsPointXY) -> None:
@@ -470,9 +470,9 @@ class StartTool(DrawingTool):
                 tr("The site or the map's CRS has changed meanwhile. Draw the start position again.")
             )
         place, ahead = begun[1], transform.to_site(end)
-        self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
+        self._set_start(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
-    def _put(self, place: Point, theta: float | None) -> None:
+    def _set_start(self, place: Point, theta: float | None) -> None:
         other = self.on_map
         if other is not None and other.kind != START:
             raise FleetError(

@@ -34,7 +34,7 @@ class RoadRouteTool(RouteTool):
     def __init__(self, desk: FleetController):
         super().__init__(desk)
         self._way = RoutePreview(desk)
-        self.wishes = SHORTEST
+        self.preferences = SHORTEST
         """Preferences for the legs led from now on."""
         self._clicks: list[Point] = []
         """Clicked goals still to be reached; the first of them is being queried."""
@@ -42,9 +42,9 @@ class RoadRouteTool(RouteTool):
         desk.preview.refused.connect(self._refused)
         desk.preview.dropped.connect(self._leave_out)
 
-    def lead_so(self, wishes: RoutePreferences) -> None:
-        """Lead legs by ``wishes`` from now on; the preview to the mouse is queried again."""
-        self.wishes = wishes
+    def set_preferences(self, preferences: RoutePreferences) -> None:
+        """Lead legs by ``preferences`` from now on; the preview to the mouse is queried again."""
+        self.preferences = preferences
         self._way.clear()
 
     def deactivate(self) -> None:
@@ -55,7 +55,7 @@ class RoadRouteTool(RouteTool):
         if self._is_finished:
             return
         robot, start = self._from()
-        self._way.lead_to(event, robot, start, self.wishes)
+        self._way.lead_to(event, robot, start, self.preferences)
 
     def finish(self) -> None:
         if self._clicks:
@@ -105,7 +105,7 @@ class RoadRouteTool(RouteTool):
 
     def _lead_on(self) -> None:
         robot, start = self._from()
-        question = RouteQuestion(robot, start, self._clicks[0], taken=True, wishes=self.wishes)
+        question = RouteQuestion(robot, start, self._clicks[0], taken=True, preferences=self.preferences)
         try:
             self.desk.preview.want(question)
         except NotSentError:
@@ -153,7 +153,7 @@ class RoadRouteTool(RouteTool):
         draft = self.draft or PendingCommand(question.robot, ROUTE, ())
         points = route.points if question.start is None else route.points[1:]
         try:
-            self.set_command(draft.with_leg(tuple(points), route_in_words(route, question.wishes)))
+            self.set_command(draft.with_leg(tuple(points), route_in_words(route, question.preferences)))
         except FleetError:
             self._clicks = following
             self._leave_out()

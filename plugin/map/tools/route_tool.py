@@ -377,11 +377,11 @@ def surfaces_of(text: str) -> tuple[str, ...]:
 
 
 class RoutePreferencesDialog(QuestionDialog):
-    """Begins with the present ``wishes``; ``confirmed`` carries those for the future."""
+    """Begins with the present ``preferences``; ``confirmed`` carries those for the future."""
 
     confirmed = pyqtSignal(object)
 
-    def __init__(self, wishes: RoutePreferences, parent: QWidget):
+    def __init__(self, preferences: RoutePreferences, parent: QWidget):
         super().__init__(
             "fleet_way_wishes_dialog",
             tr("Ways on roads"),
@@ -391,19 +391,19 @@ class RoutePreferencesDialog(QuestionDialog):
         )
         self.add_text(tr("This holds for every leg that is led from now on, until QGIS is closed."))
         self._way = self.add_choice(tr("Way"), ROUTE_CRITERIA, "fleet_way_wishes_way")
-        self._way.setCurrentIndex(self._way.findData(wishes.fastest))
-        self._surfaces = QLineEdit(", ".join(wishes.surfaces))
+        self._way.setCurrentIndex(self._way.findData(preferences.fastest))
+        self._surfaces = QLineEdit(", ".join(preferences.surfaces))
         self._surfaces.setPlaceholderText(tr("all, or such as: asphalt, concrete"))
         self.add_field(tr("Surfaces"), self._surfaces, "fleet_way_wishes_surfaces")
-        self._width = _metres(wishes.least_width)
+        self._width = _metres(preferences.least_width)
         self.add_field(tr("Width"), self._width, "fleet_way_wishes_width")
         self._avoid = QCheckBox(tr("Keep off roads on which other robots are sent"))
-        self._avoid.setChecked(wishes.avoid_reserved)
+        self._avoid.setChecked(preferences.avoid_reserved)
         self.add_field("", self._avoid, "fleet_way_wishes_avoid")
         self.lay_out()
-        self.accepted.connect(lambda: self.confirmed.emit(self.wishes()))
+        self.accepted.connect(lambda: self.confirmed.emit(self.preferences()))
 
-    def wishes(self) -> RoutePreferences:
+    def preferences(self) -> RoutePreferences:
         """Return the preferences in the fields."""
         return RoutePreferences(
             fastest=self._way.currentData(),

@@ -91,7 +91,7 @@ def test_clicks_whose_ways_are_dropped_are_told_and_are_not_what_backspace_takes
     if how == "link":
         roads.hand.window.desk.close_link()
     else:
-        roads.hand.iface.canvas.mapTool().lead_so(RoutePreferences(fastest=True))
+        roads.hand.iface.canvas.mapTool().set_preferences(RoutePreferences(fastest=True))
     assert roads.hand.complained("The ways to the 2 places clicked last were not known yet")
     assert roads.ends == [(60, 40)]
     roads.hand.key(Qt.Key.Key_Backspace)

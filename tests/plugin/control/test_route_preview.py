@@ -170,10 +170,10 @@ def test_what_is_no_way_is_said_and_other_answers_are_left_alone(preview, gatewa
 
 
 def test_what_is_wanted_of_the_way_is_asked_of_the_gateway(preview, gateway):
-    wishes = RoutePreferences(fastest=True, surfaces=("asphalt",), least_width=3.5, avoid_reserved=True)
+    preferences = RoutePreferences(fastest=True, surfaces=("asphalt",), least_width=3.5, avoid_reserved=True)
     preview.want(to(1.0))
     gateway.answer(preview)
-    preview.want(to(2.0, wishes=wishes))
+    preview.want(to(2.0, preferences=preferences))
     names = ("fastest", "surfaces", "least_width", "avoid_reserved")
     plain, wished = ([order.params.get(name) for name in names] for order in gateway.orders)
     assert plain == [False, None, 0.0, False]
@@ -182,14 +182,14 @@ def test_what_is_wanted_of_the_way_is_asked_of_the_gateway(preview, gateway):
 
 def test_what_was_wanted_stands_beside_the_way():
     route = RouteReport([(0.0, 0.0), (9.0, 0.0)], 9.0, 5.0)
-    wishes = RoutePreferences(
+    preferences = RoutePreferences(
         fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True
     )
     assert route_in_words(route, SHORTEST) == "9.0 m, 5 s"
     told = (
         "the fastest way, off the roads of other robots, only on asphalt, gravel, roads at least 3.5 m wide"
     )
-    assert route_in_words(route, wishes, apart="\n") == f"9.0 m, 5 s\n{told}"
+    assert route_in_words(route, preferences, apart="\n") == f"9.0 m, 5 s\n{told}"
 
 
 def test_names_of_surfaces_are_read_with_commas_between():
@@ -207,18 +207,18 @@ def test_a_way_on_one_surface_tells_its_metres_once():
 
 
 def test_the_dialog_begins_with_what_holds_and_gives_what_was_changed(qgis_app):
-    wishes = RoutePreferences(
+    preferences = RoutePreferences(
         fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True
     )
     window = QWidget()
     confirmed = []
-    for begin in (wishes, SHORTEST):
+    for begin in (preferences, SHORTEST):
         dialog = RoutePreferencesDialog(begin, window)
         dialog.confirmed.connect(confirmed.append)
         if begin is SHORTEST:
             dialog.findChild(QLineEdit, "fleet_way_wishes_surfaces").setText("gravel")
         dialog.findChild(QPushButton, "fleet_way_wishes_confirm").click()
-    dialog = RoutePreferencesDialog(wishes, window)
+    dialog = RoutePreferencesDialog(preferences, window)
     dialog.confirmed.connect(confirmed.append)
     dialog.findChild(QPushButton, "fleet_way_wishes_dialog_cancel").click()
-    assert confirmed == [wishes, RoutePreferences(surfaces=("gravel",))]
+    assert confirmed == [preferences, RoutePreferences(surfaces=("gravel",))]
