@@ -59,7 +59,7 @@ class PlanEditor(QObject):
         self._reading, self._waiting = CooperativeTask(self), CooperativeTask(self)
         self._closures: Sequence[ClosureReport] = ()
         """The closures that the task considers."""
-        self._then: Callable[[PlanProposal], None] = self._put
+        self._then: Callable[[PlanProposal], None] = self._set_draft
         """Receives the plan that the task makes."""
         self._closure_check, self._made_check = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.check_closures)
@@ -220,7 +220,7 @@ class PlanEditor(QObject):
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
             blank,
             lambda task: assign(job, ways.travel_of(job, task.goes_on), objective, task.report_progress),
-            self._put,
+            self._set_draft,
         )
 
     def _edit(self, change: Callable[[ConePlan, plan_changes.TravelOf], ConePlan]) -> None:
@@ -232,7 +232,7 @@ class PlanEditor(QObject):
                 title,
                 draft,
                 lambda task: change(draft.plan, lambda job: draft.ways.travel_of(job, task.goes_on)),
-                self._put,
+                self._set_draft,
             )
 
     def _set_draft(self, draft: PlanProposal) -> None:
