@@ -395,7 +395,8 @@ class ClientConnection(ServerConnection):
             until = self.loop.time() + STOP_PATIENCE_S
 
     async def expel(self, code: int, reason: str) -> None:
-        """End the connection, with or without the client's close; further messages are ignored."""
+        """End the connection, with or without the client's close; further messages are ignored, or all but
+        stops where the client did not keep to the limits."""
         self._expelled = True
         try:
             with contextlib.suppress(TimeoutError):
@@ -427,19 +428,24 @@ class ClientConnection(ServerConnection):
     async def __aiter__(self) -> AsyncIterator[Any]:
         """Yield the messages; those beyond the limit are refused, and finally the connection is closed.
 
-        A stop is yielded all the same if it has arrived before the close, even behind what led to it.
+        A stop is yielded all the same until the client has closed its side, also behind what led to the end;
+        not that of a client that is expelled.
         """
         async for frame in super().__aiter__():
-            if self._expelled:
+            if self._expelled and self._ending is None:
                 return
             self._last_received_at = self.loop.time()
-            is_beyond = not self._messages.consume()
+            is_over = self._ending is not None
+            is_beyond = is_over or not self._messages.consume()
             call = _call_in(frame) if is_beyond else None
             if not is_beyond or (call is not None and self._never_refused(call)):
                 yield frame
+            elif is_over:
+                # Of what follows a message that was dropped nothing is carried out.
+                pass
             elif self._patience.consume():
                 self._refuse(call)
-            elif self._ending is None:
+            else:
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
                 self._end(CloseCode.POLICY_VIOLATION, "too many messages a second")
             self.short_cut.on_the_long_way -= 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import socket
 from functools import partial
 
@@ -11,11 +12,13 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
+from websockets.protocol import State
 
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth import client_connection
 from robot_bridge.gateway.auth.accounts import TokenKind
 from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
+from robot_bridge.protocol import jsonrpc
 from tests.support.patience import BUSY, until
 
 
@@ -158,6 +161,23 @@ async def test_too_many_messages_are_refused_whichever_way_they_go(host, client)
         await client.recv()
     assert caught.value.rcvd.code == 1008
     assert len(host.came) < 2 * burst
+
+
+async def test_a_stop_is_accepted_until_the_client_closes_and_nothing_else(host, client, monkeypatch):
+    monkeypatch.setattr(client_connection, "CLOSE_WITHIN", BUSY * 10)
+    await until(lambda: hasattr(host, "visitor"))
+    host.visitor.accept_stops(lambda _: False, lambda call: call.method == "stop")
+    client.transport.pause_reading()  # It does not hear of the close.
+    for _ in range(5 * OpenDoor.limits.robot_burst):
+        await client.send("p")
+    await until(lambda: host.visitor.protocol.state is not State.OPEN)
+    before = len(host.came)
+    # As after a pause in which the limit has room again.
+    host.visitor._messages = client_connection.RateLimit(1000.0, 1000.0)
+    for text in ("p", jsonrpc.call("stop", {}, 1)):
+        await client.send(text)
+    await host.until(before + 1)
+    assert [json.loads(text)["method"] for _, text in host.came[before:]] == ["stop"]
 
 
 async def long_message(goes_on):
