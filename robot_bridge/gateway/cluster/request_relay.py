@@ -29,7 +29,7 @@ from ...core.errors import (
     unstored_abort,
     with_abort_sent,
 )
-from ...core.json_decoder import decode_json
+from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import log_and_continue, log_unforeseen
 from ...core.messages.base import DeskRequest, MessageError, to_json
 from ...core.messages.commands import (
@@ -549,13 +549,16 @@ def _outcome_in(answer: str, sent: Sequence[str]) -> Outcome:
             return refusal
         refused = MessageError if isinstance(refusal, MessageError) else RefusedError
         return refused(with_abort_sent(refusal, sent))
-    except StoreError as error:
+    except BridgeError as error:
         return error
 
 
 def _result_in(answer: str) -> dict[str, Any]:
     """Return the result in an answer; raises an error contained in it."""
-    content = decode_json(answer)
+    try:
+        content = decode_json(answer)
+    except DecodingError:
+        content = None
     if isinstance(content, dict) and isinstance(content.get("result"), dict):
         result: dict[str, Any] = content["result"]
         return result

@@ -249,14 +249,22 @@ class QueueRunner:
         """Run the queues until cancelled."""
         loop = asyncio.get_running_loop()
         look_at = loop.time() + until_tick(LOOK_INTERVAL)
-        async with asyncio.TaskGroup() as group:
+        running: set[asyncio.Task[None]] = set()
+        try:
             while True:
                 await wait_at_most(self._event, look_at - loop.time())
                 # Not only when nothing comes: in a busy fleet something always does.
                 if loop.time() >= look_at:
                     self.schedule_all()
                     look_at = loop.time() + until_tick(LOOK_INTERVAL)
-                self._begin(group)
+                for task in self._begin():
+                    running.add(task)
+                    task.add_done_callback(running.discard)
+        finally:
+            # Not by a TaskGroup, which would raise a group of errors in place of the one.
+            for task in running:
+                task.cancel()
+            await asyncio.gather(*running, return_exceptions=True)
 
     def schedule(self, robot: str) -> None:
         """Schedule a check of a robot's queue."""
@@ -348,17 +356,17 @@ class QueueRunner:
 
     # --------------------------------------------------------------------------------------------------
 
-    def _begin(self, group: asyncio.TaskGroup | None = None) -> list[asyncio.Task[None]]:
+    def _begin(self) -> list[asyncio.Task[None]]:
         """Begin to process each scheduled queue, or leave it scheduled while it is being processed."""
         self._event.clear()
         begun = self._due - self._advancing
         self._due -= begun
-        start, tasks = asyncio.create_task if group is None else group.create_task, []
+        tasks = []
         # A robot that was removed still has a queue, in case it comes back.
         for robot in sorted(robot for robot in begun if robot in self._robots):
             self._advancing.add(robot)
             # Of its own: while a long way of one robot is planned, the others are sent on.
-            task = start(self._advance(robot))
+            task = asyncio.create_task(self._advance(robot))
             task.add_done_callback(partial(self._end, robot))
             tasks.append(task)
         return tasks

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from sqlalchemy import text
 
-from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.errors import BridgeError, RefusedError, StoreError
 from robot_bridge.core.messages.base import DESK_REQUESTS, Role
 from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send
 from robot_bridge.core.messages.queues import PauseRobot, TakeOver
@@ -359,3 +359,8 @@ def test_what_is_asked_of_one_robot_is_done_by_the_gateway_that_has_it():
     }
     missing = of_a_robot - set(request_relay.RELAYED) - {TakeOver}
     assert not missing, f"{sorted(one.method for one in missing)}: add them to RELAYED of request_relay.py"
+
+
+@pytest.mark.parametrize("answer", ["{", "[]", '{"error": {"kind": "ForbiddenError", "text": "no"}}'])
+def test_an_answer_that_cannot_be_read_is_an_outcome_of_its_robot_alone(answer):
+    assert isinstance(request_relay._outcome_in(answer, []), BridgeError)
