@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import time
-from functools import partial
 from pathlib import Path
 
 from qgis.PyQt.QtCore import (
@@ -123,18 +122,20 @@ class PracticeFleet(QObject):
         for name, pose in POSES.items():
             robot = self._process()
             robot.setStandardOutputFile(QProcess.nullDevice())
-            robot.errorOccurred.connect(partial(self._robot_failed, name, robot))
-            robot.finished.connect(partial(self._robot_failed, name, robot))
+            robot.setObjectName(name)
+            robot.errorOccurred.connect(self._robot_failed)
+            robot.finished.connect(self._robot_failed)
             robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}", WITH_QGIS])
 
-    def _robot_failed(self, name: str, robot: QProcess, *_: object) -> None:
+    def _robot_failed(self, *_: object) -> None:
+        robot = self.sender()
         failed = robot.error() != QProcess.ProcessError.UnknownError
         why = robot.errorString() if failed else tr("it ended with code {code}", code=robot.exitCode())
         self.failed.emit(
             tr(
                 "The practice robot {robot} does not run: {why}. Close the tour and start the practice fleet "
                 "again; if that fails, see what {program} says by hand.",
-                robot=name,
+                robot=robot.objectName(),
                 why=why.rstrip("."),
                 program=self.program,
             )

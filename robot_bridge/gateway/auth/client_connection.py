@@ -400,7 +400,9 @@ class ClientConnection(ServerConnection):
         self._expelled = True
         try:
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self.close(code, reason), CLOSE_WITHIN)
+                # Not by wait_for, whose task begins later: the end of the reading closes with 1000 first.
+                async with asyncio.timeout(CLOSE_WITHIN):
+                    await self.close(code, reason)
         finally:
             self.transport.abort()
 

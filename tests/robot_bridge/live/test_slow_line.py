@@ -14,6 +14,7 @@ from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.settings import SiteSettings
+from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.core.sites.site import write_site
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
@@ -73,7 +74,9 @@ def city(tmp_path_factory):
         OutlineRow(SIDE / 2 + (10.0 + n) * shore, 1, 6.0, "shore", f"shores:{n}") for n in range(OUTLINES)
     ]
     bounds = SiteBounds(0.0, 0.0, SIDE, SIDE)
-    settings = SiteSettings("city", "City", 1, "EPSG:32633", (430000.0, 5100000.0), bounds)
+    # A client that answers nothing, no ping either, must not be cut off before the stop.
+    limits = LimitSettings(stuck_s=600.0)
+    settings = SiteSettings("city", "City", 1, "EPSG:32633", (430000.0, 5100000.0), bounds, limits=limits)
     write_site(folder, settings, Outlines.from_rows(rows))
     return folder
 

@@ -611,7 +611,7 @@ def test_a_gateway_that_wants_the_database_alone_is_refused(pair, start_bridge, 
         (
             ["--gateway-name", "c", "--public-address", "a.example.org:8765"],
             "postgresql",
-            "public address 'a.example.org:8765' cannot be told to robots",
+            "public address 'a.example.org:8765' cannot be sent to robots",
         ),
     ],
 )
