@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket as system_sockets
+import ssl
 import threading
 from types import ModuleType
 from typing import Any
@@ -68,7 +69,10 @@ class GatewayClient:
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
         self._submitted = self._written = 0
         """The numbers of messages to send on this link, and of those that were written."""
+        self._large = self._large_before_stop = 0
+        """Up to which of them large ones have to be written: of all, and before the last stop."""
         self._stop_asked = asyncio.Event()
+        self._tls_context: ssl.SSLContext | None = None
 
     @property
     def _url(self) -> str:
@@ -124,9 +128,10 @@ class GatewayClient:
 
     def submit(self, order: OperatorRequest) -> None:
         """Send ``order`` now, or as soon as there is a link again; what stops robots, has that tried now."""
-        self._send_all(self._protocol.submit(order))
         if stops_robots(order):
+            self._large_before_stop = self._large
             self._stop_asked.set()
+        self._send_all(self._protocol.submit(order))
 
     async def _attempt(self) -> GatewayLinkError:
         """Hold one link and return why it ended."""
@@ -162,9 +167,12 @@ class GatewayClient:
         """Return the option for TLS, if it is used."""
         if not connection_status.uses_tls(self._url):
             return {}
-        # In a thread: a CA file that does not answer must not keep the link from being given up.
-        loop = asyncio.get_running_loop()
-        return {"ssl": await loop.run_in_executor(None, self._credentials.tls_context)}
+        if self._tls_context is None:
+            # In a thread: a CA file that does not answer must not keep the link from being given up. Once: it
+            # may be on a share that goes with the network, and a stop waits for the next link.
+            loop = asyncio.get_running_loop()
+            self._tls_context = await loop.run_in_executor(None, self._credentials.tls_context)
+        return {"ssl": self._tls_context}
 
     def _connect(self, tls: dict[str, Any]) -> Any:
         options: dict[str, Any] = {
@@ -185,7 +193,7 @@ class GatewayClient:
 
     async def _converse(self, socket: Any) -> None:
         self._outgoing = asyncio.Queue()
-        self._submitted = self._written = 0
+        self._submitted = self._written = self._large = self._large_before_stop = 0
         self._stop_asked = asyncio.Event()
         _hold_little(socket)
         self._send_all(self._protocol.begin())
@@ -284,11 +292,10 @@ class GatewayClient:
         while True:
             await self._stop_asked.wait()
             self._stop_asked.clear()
-            before_it = self._submitted - 1
-            while self._written < before_it:
+            while self._written < self._large_before_stop:
                 await asyncio.sleep(STOP_PATIENCE)
                 # Where all is on its way, the line is fast, and this process slow.
-                if self._written < before_it and socket.transport.get_write_buffer_size():
+                if self._written < self._large_before_stop and socket.transport.get_write_buffer_size():
                     socket.transport.abort()
                     raise GatewayLinkError(
                         tr(
@@ -302,7 +309,9 @@ class GatewayClient:
     def _send_all(self, texts: list[str]) -> None:
         for text in texts:
             self._outgoing.put_nowait(text)
-        self._submitted += len(texts)
+            self._submitted += 1
+            if len(text) > PIECE:
+                self._large = self._submitted
 
 
 def _hold_little(socket: Any) -> None:
