@@ -161,8 +161,8 @@ class TrajectoryRecorder:
 # --- Storage of robots' tracks and current poses, in an order that loses nothing
 
 TRIED = 5
-"""robots of which a position is tried before a table counts as one that refuses all: others each time, so
-that some whose rows an administrator refuses do not keep those of the others back for long."""
+"""robots of which a row is tried before a table counts as one that refuses all: others each time, so that
+some whose rows an administrator refuses do not keep those of the others back for long."""
 
 
 class TableRefusesError(StoreError):
@@ -211,6 +211,10 @@ class TrajectoryWriter:
         self._news = TroubleNews()
         self._refusal: StoreError | None = None
         """why no position was taken, until :meth:`save` tries again."""
+        self._robots_refusal: StoreError | None = None
+        """why no robot was taken; until :meth:`save` tries all again, only those registered are tried."""
+        self._registered: set[str] = set()
+        """robots to be stored in any case, since :meth:`save` last tried all."""
         self._writing = asyncio.Lock()
         self._begun = self._done = 0
         """counts of writes of robots: the number of the last begun one, and of the last one that
@@ -247,6 +251,7 @@ class TrajectoryWriter:
         same, and stored later: after a crash before that they say Ready again.
         """
         self._unsaved.update(robots)
+        self._registered.update(robots)
         with contextlib.suppress(*[LockedError] if robots else []):
             await to_its_end(self._save(self._begun if robots else None))
 
@@ -294,12 +299,16 @@ class TrajectoryWriter:
                 return
             self._requeue_lost()
             if begun is None:
-                self._refusal = None
+                self._refusal = self._robots_refusal = None
+                self._registered.clear()
             while True:
                 fixes = self._next_batch()
                 last, unsaved = self._refusal is not None or not self._recorder.waiting, set[str]()
                 if last:
-                    unsaved, self._unsaved = self._unsaved, set()
+                    unsaved = (
+                        self._unsaved if self._robots_refusal is None else self._unsaved & self._registered
+                    )
+                    self._unsaved = self._unsaved - unsaved
                     self._begun += 1
                 try:
                     # As they are now: when they are written they may be ahead of the stored positions.
@@ -322,25 +331,27 @@ class TrajectoryWriter:
                 self._removed |= written.removed
                 self._stored.update(row[0] for row in known if row[0] not in written.refused)
                 self._stored -= written.removed
+                self._note_refusal(known, written)
                 taken_back = self._requeue_lost()
                 # With this commit, earlier relaxed writes of the same session are durable, too.
                 self._jotted.clear()
                 if last and not taken_back:
                     break
-            if begun is None:
-                self._check_tables(known, written)
+            if begun is None and (refusal := self._refusal or self._robots_refusal) is not None:
+                raise refusal
 
     def _next_batch(self) -> list[PackedFix]:
         """Return the oldest positions to be stored; none from a refusal on until :meth:`save` tries again."""
         return [] if self._refusal is not None else self._recorder.next_batch(self._clock.time())
 
-    def _check_tables(self, known: Sequence[Row], written: WrittenRobots) -> None:
-        """Raise TableRefusesError where no position, or none of several robots, was taken."""
-        if self._refusal is not None:
-            raise self._refusal
+    def _note_refusal(self, known: Sequence[Row], written: WrittenRobots) -> None:
+        """Requeue refused robots where the table takes none of several."""
         if written.reason is not None and len(written.refused) == len(known) > 1:
+            self._robots_refusal = TableRefusesError(
+                written.reason, "where they are is stored as soon as it goes", "robots"
+            )
+        if self._robots_refusal is not None:
             self._unsaved |= written.refused
-            raise TableRefusesError(written.reason, "where they are is stored as soon as it goes", "robots")
 
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
         """Store robots and positions; only data that the database refuses is left out.
@@ -353,6 +364,9 @@ class TrajectoryWriter:
             return await self._write_known(known, fixes)
         except DataRefusedError as error:
             fixes = await self._without_tried(fixes, error)
+            if await self._refuses_all(known):
+                removed = (await self._write_apart([], fixes)).removed
+                return WrittenRobots(removed, {row[0] for row in known}, error)
         return await self._write_apart(known, fixes)
 
     async def _without_tried(
@@ -371,6 +385,16 @@ class TrajectoryWriter:
         if tried:
             raise TableRefusesError(error, "positions are kept until it takes them", "trajectories")
         return fixes
+
+    async def _refuses_all(self, known: Sequence[Row]) -> bool:
+        """Store some of several robots one by one, up to the first that is taken; return whether none is."""
+        if len(known) < 2 and self._robots_refusal is None:
+            return False
+        for row in random.sample(known, min(TRIED, len(known))):
+            with contextlib.suppress(DataRefusedError):
+                await self._write_known([row], [])
+                return False
+        return bool(known)
 
     async def _write_known(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
         return WrittenRobots(await self._database.run(_write, known, fixes, self._stored, self._fence), set())

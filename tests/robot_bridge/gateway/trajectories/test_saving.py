@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import dataclasses
 from types import SimpleNamespace
 
@@ -335,6 +336,47 @@ async def test_robots_of_whom_none_can_be_stored_are_reported_and_stored_later(c
     await allow(database)
     await crowd.saving.save()
     assert await database.run(stored_robots.names) == ["r1", "r2"] and len(await of_all(database)) == 4
+
+
+@pytest.fixture
+def writes(database, monkeypatch):
+    """The names of the robots in each write of robots and positions."""
+    run, writes = database.run, []
+
+    async def noted(work, *arguments):
+        if len(arguments) == 4:
+            writes.append({row[0] for row in arguments[0]})
+        return await run(work, *arguments)
+
+    monkeypatch.setattr(database, "run", noted)
+    return writes
+
+
+async def test_a_table_that_takes_no_robot_is_not_asked_for_each_and_those_who_come_in_are_tried(
+    crowd, database, writes
+):
+    names = {f"r{number}" for number in range(1, 41)}
+    for name in (*names, "r41", "s1"):
+        crowd.robots.ready(name, 1, "websocket", 5.0)
+    await refuse(database, "robots", "new.name like 'r%'")
+    # The registration comes while the table is not known to refuse; it leaves nobody out.
+    for save in (crowd.saving.save("r1"), crowd.saving.save()):
+        for name in names:
+            crowd.saving.touch(name)
+        with contextlib.suppress(StoreError):
+            await save
+        assert writes[0] == names and len(writes) <= 8
+        writes.clear()
+    await crowd.saving.save("r41")
+    assert writes == [{"r41"}, {"r41"}, set()]
+    await crowd.saving.save("s1")
+    assert await database.run(stored_robots.names) == ["s1"]
+    with pytest.raises(StoreError, match="so it is with every robot: where they are"):
+        await crowd.saving.save()
+    await allow(database)
+    await crowd.saving.save()
+    assert set(await database.run(stored_robots.names)) == {*names, "r41", "s1"}
+    assert len(await of_all(database)) == 4
 
 
 async def test_how_a_robot_fell_silent_is_stored(database):
