@@ -216,9 +216,9 @@ class TrajectoryWriter:
         self._registered: set[str] = set()
         """robots to be stored in any case, since :meth:`save` last tried all."""
         self._writing = asyncio.Lock()
-        self._begun = self._done = 0
-        """counts of writes of robots: the number of the last begun one, and of the last one that
-        succeeded."""
+        self._begun = self._done = self._locked = 0
+        """counts of writes of robots: the number of the last begun one, of the last one that succeeded, and
+        of the last one that met a lock."""
 
     def begin(self, robots: Iterable[str]) -> None:
         """Continue with ``robots``, which an earlier gateway stored."""
@@ -292,10 +292,11 @@ class TrajectoryWriter:
                 self._jotted.append((session, fixes))
 
     async def _save(self, begun: int | None) -> None:
-        """Store robots, unless a write after number ``begun`` has already done so."""
+        """Store robots, unless a write after number ``begun`` has already done so, or met a lock."""
         async with self._writing:
-            if begun is not None and self._done > begun:
-                # Already written by the previous holder of the lock, after this was requested.
+            if begun is not None and max(self._done, self._locked) > begun:
+                # By the previous holder of ``_writing``, after this was requested. What met a lock of the
+                # database is stored later: each would wait for it in turn.
                 return
             self._requeue_lost()
             if begun is None:
@@ -316,16 +317,13 @@ class TrajectoryWriter:
                         stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
                     ]
                     written = await self._write(known, fixes)
-                except TableRefusesError as error:
-                    self._recorder.requeue(fixes)
-                    self._unsaved |= unsaved
+                except Exception as error:
+                    self._requeue_failed(error, fixes, unsaved)
+                    if not isinstance(error, TableRefusesError):
+                        raise
                     # Poses are stored all the same: else no robot could be registered while it lasts.
                     self._refusal = error
                     continue
-                except Exception:
-                    self._recorder.requeue(fixes)
-                    self._unsaved |= unsaved
-                    raise
                 if last:
                     self._done = self._begun
                 self._removed |= written.removed
@@ -343,6 +341,14 @@ class TrajectoryWriter:
     def _next_batch(self) -> list[PackedFix]:
         """Return the oldest positions to be stored; none from a refusal on until :meth:`save` tries again."""
         return [] if self._refusal is not None else self._recorder.next_batch(self._clock.time())
+
+    def _requeue_failed(self, error: Exception, fixes: Sequence[PackedFix], unsaved: set[str]) -> None:
+        """Requeue what a write of robots could not store because of ``error``."""
+        self._recorder.requeue(fixes)
+        self._unsaved |= unsaved
+        if isinstance(error, LockedError):
+            # Counted also where only positions were written: it ends the wait of all who wait by then.
+            self._begun = self._locked = self._begun + 1
 
     def _note_refusal(self, known: Sequence[Row], written: WrittenRobots) -> None:
         """Requeue refused robots where the table takes none of several."""

@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import select
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.errors import DataRefusedError, LockedError, StoreError
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import TrajectorySettings
 from robot_bridge.gateway.model.robots import Robots
@@ -20,7 +20,7 @@ from robot_bridge.gateway.storage.repositories import robots as stored_robots
 from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import Fix
 from robot_bridge.gateway.storage.schema import trajectories as table
-from robot_bridge.gateway.trajectories.recording import TrajectoryRecorder, TrajectoryWriter
+from robot_bridge.gateway.trajectories.recording import BATCH, TrajectoryRecorder, TrajectoryWriter
 from tests.support.bridge.busy_database import kept_busy
 from tests.support.patience import until
 
@@ -254,6 +254,34 @@ async def test_a_robot_whose_turn_failed_is_stored_in_the_next_ones(yard, databa
     )
     assert (type(first), second) == (StoreError, None)
     assert await run(stored_robots.names) == ["r1", "r2"]
+
+
+@pytest.mark.parametrize("positions", [1, BATCH + 1], ids=["with robots", "before robots"])
+async def test_a_lock_is_waited_for_once_by_all_who_are_registered_meanwhile(
+    yard, database, monkeypatch, positions
+):
+    names, run, times = [f"r{number}" for number in range(2, 22)], database.run, []
+
+    async def wait_for_lock(work, *arguments):
+        times.append(work)
+        await asyncio.sleep(0)
+        raise LockedError("a backup has it locked")
+
+    yard.tell(*map(float, range(positions)))
+    for name in names:
+        yard.robots.ready(name, 1, "websocket", 0.0)
+    with monkeypatch.context() as locked:
+        locked.setattr(database, "run", wait_for_lock)
+        await asyncio.gather(*map(yard.saving.save, names))
+        assert len(times) == 1
+        # Who comes later looks whether it is over, and the periodic save reports it.
+        await yard.saving.save("r2")
+        with pytest.raises(LockedError):
+            await yard.saving.save()
+        assert len(times) == 3
+    await yard.saving.save("r2")
+    assert await run(stored_robots.names) == sorted([*names, "r1"])
+    assert len(await of_all(database)) == positions
 
 
 async def test_answers_that_are_refused_with_positions_are_written_without_and_each_position_alone(yard):
