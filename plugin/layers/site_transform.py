@@ -151,21 +151,24 @@ def transform_points(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.nd
     return np.frombuffer(geometry.asWkb().data(), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
 
 
+PIECES = 8
+"""Parts of points that have no place together which are tried next."""
+
+
 def transform_points_or_nan(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
-    """Return (n, 2) coordinates through ``transform``, not finite where the target CRS has no place."""
-    try:
-        return transform_points(xy, transform)
-    except QgsCsException:
-        return np.array([_moved_alone(x, y, transform) for x, y in xy.tolist()])
+    """Return coordinates through ``transform``, (n, 2), or (n, k, 2) for n things with k points each.
 
-
-def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple[float, float]:
+    A point has NaN where the target CRS has no place for it, a thing where it has none for one of its points.
+    """
     try:
-        check_transform(transform)
-        point = transform.transform(QgsPointXY(x, y))
+        moved = transform_points(xy.reshape(-1, 2), transform).reshape(xy.shape)
     except QgsCsException:
-        return float("nan"), float("nan")
-    return point.x(), point.y()
+        if len(xy) <= 1 or not transform.isValid():
+            return np.full(xy.shape, np.nan)
+        parts = np.array_split(xy, min(len(xy), PIECES))
+        return np.concatenate([transform_points_or_nan(part, transform) for part in parts])
+    is_placed = np.isfinite(moved).all(axis=tuple(range(1, xy.ndim)), keepdims=True)
+    return np.where(is_placed, moved, np.nan)
 
 
 # --- From a layer's coordinates to metres in the site frame ---
@@ -390,6 +393,14 @@ class SiteToMapTransform:
         :raises MapTransformError: when a point cannot be expressed in the map's CRS.
         """
         return transform_or_raise(self.frame.to_crs(xy), self._forward)
+
+    def to_map_or_nan(self, xy: Points) -> Points:
+        """Return (n, 2) or (n, k, 2) as :meth:`to_map` does, NaN for what has no place in the map's CRS.
+
+        Of (n, k, 2) the k points of a thing have a place together, as in :func:`transform_points_or_nan`.
+        """
+        in_crs = self.frame.to_crs(xy.reshape(-1, 2)).reshape(xy.shape)
+        return transform_points_or_nan(in_crs, self._forward)
 
     @property
     def axes(self) -> Points | None:

@@ -432,7 +432,10 @@ NO_CIRCLES: Circles = np.empty(0, dtype=np.intp), np.empty((0, CORNERS, 2))
 
 
 def circles(placed: MapScene, view: InView) -> Circles:
-    """Return the circles of the robots with a known accuracy large enough to see."""
+    """Return the circles of the robots with a known accuracy large enough to see.
+
+    One that has no place in the map's CRS is left out.
+    """
     robots = placed.scene.robots
     # NaN compares false.
     wide = view.rows[robots.accuracy.take(view.rows) * view.scale > SMALLEST_CIRCLE]
@@ -440,8 +443,11 @@ def circles(placed: MapScene, view: InView) -> Circles:
         wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
     if len(wide) == 0:
         return NO_CIRCLES
-    corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
-    return wide, placed.transform.to_map(corners.reshape(-1, 2)).reshape(corners.shape)
+    corners = placed.transform.to_map_or_nan(
+        robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
+    )
+    is_placed = np.isfinite(corners[:, 0, 0])
+    return wide[is_placed], corners[is_placed]
 
 
 def paint_circles(painter: QPainter, found: Circles, placed: MapScene, screen: Screen) -> None:

@@ -400,14 +400,8 @@ def _robot_points(robots: RobotArrays, rows: npt.NDArray[np.intp], *, is_uneven:
 
 def _have_place(xy: Points, transform: SiteToMapTransform) -> npt.NDArray[np.bool_]:
     """Return (n,) whether each position, and one a metre from it, has a place in the map's CRS."""
-    try:
-        transform.to_map(np.concatenate([xy, xy + 1.0, xy - 1.0]))
-    except MapTransformError:
-        if len(xy) == 1:
-            return np.zeros(1, dtype=np.bool_)
-        half = len(xy) // 2
-        return np.concatenate([_have_place(xy[:half], transform), _have_place(xy[half:], transform)])
-    return np.ones(len(xy), dtype=np.bool_)
+    around = np.stack([xy, xy + 1.0, xy - 1.0], axis=1)
+    return np.isfinite(transform.to_map_or_nan(around)[:, 0, 0])
 
 
 def _forward(theta: npt.NDArray[np.float64]) -> Points:

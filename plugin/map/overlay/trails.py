@@ -216,12 +216,14 @@ class TrailSheet:
                 self.filled = True
                 return
             earlier = np.full((len(sample), 2), np.nan)
-            places = sample.take(there, axis=0)[:, :2]
-            earlier[there] = self.screen.pixels(self._transform.to_map(places)) * self.screen.ratio
+            places = self._transform.to_map_or_nan(sample.take(there, axis=0)[:, :2])
+            earlier[there] = self.screen.pixels(places) * self.screen.ratio
             later, times = self._later
             self._stamp(earlier, later, times)
             self._later = earlier, sample[:, 2]
             self._taken = self._taken - 1
+            # A trail ends at a sample without a place: finding many of those in each step takes long.
+            self._taken[there[np.isnan(places[:, 0])]] = 0
             if time.perf_counter() > until:
                 return
 

@@ -34,16 +34,27 @@ def test_those_with_a_place_are_moved_and_the_others_are_not_finite(qgis_app):
         np.testing.assert_allclose(found, (point.x(), point.y()), atol=1e-9)
 
 
-def test_where_qgis_refuses_them_together_they_are_moved_one_by_one(qgis_app, monkeypatch):
-    together = site_transform.transform_points_or_nan(PLACES, way(qgis_app))
+def test_where_qgis_refuses_them_together_they_are_moved_in_smaller_and_smaller_parts(qgis_app, monkeypatch):
+    places = np.tile(PLACES, (5, 1))
+    together = site_transform.transform_points_or_nan(places, way(qgis_app))
+    assert np.isfinite(together).all(axis=1).tolist() == THERE * 5
+    whole = site_transform.transform_points
 
-    def refused(_xy, _transform):
-        raise QgsCsException("no place")
+    def strict(xy, transform):
+        moved = whole(xy, transform)
+        if not np.isfinite(moved).all():
+            raise QgsCsException("no place")
+        return moved
 
-    monkeypatch.setattr(site_transform, "transform_points", refused)
-    alone = site_transform.transform_points_or_nan(PLACES, way(qgis_app))
-    assert np.isfinite(alone).all(axis=1).tolist() == THERE
-    np.testing.assert_allclose(alone[THERE], together[THERE], atol=1e-6)
+    monkeypatch.setattr(site_transform, "transform_points", strict)
+    apart = site_transform.transform_points_or_nan(places, way(qgis_app))
+    np.testing.assert_allclose(apart, together, atol=1e-6)
+
+
+def test_of_a_thing_one_point_without_a_place_leaves_out_all_and_no_other_thing(qgis_app):
+    things = np.stack([PLACES[[0, 1]], PLACES[[0, 2]]])
+    moved = site_transform.transform_points_or_nan(things, way(qgis_app))
+    assert np.isfinite(moved).all(axis=2).tolist() == [[False, False], [True, True]]
 
 
 def test_one_point_and_none(qgis_app):

@@ -75,12 +75,22 @@ def test_a_robot_that_the_map_cannot_place_takes_no_other_from_it(canvas, site):
         (8e7, 9e7, 0.0, RobotState.FRESH),
         (70, 50, 0.0, RobotState.FRESH),
     ]
-    show(canvas, site, scene_of(robots[0]), crs="EPSG:4326")
+    trails = Trails()
+    overlay = show(canvas, site, scene_of(robots[0]), crs="EPSG:4326", trails=trails)
+    trails.extend(np.array([(40.0, 50.0), (7e7, 9e7), (70.0, 80.0)]), 99.0)
+    trails.extend(np.array([robot[:2] for robot in robots]), 100.0)
     placed = SceneTransformer().placed(scene_of(*robots), placement_of(canvas, site))
     assert np.isfinite(placed.robots).all(axis=1).tolist() == [True, False, True]
     assert np.isfinite(placed.metre).all(axis=1).tolist() == [True, False, True]
     alone = SceneTransformer().placed(scene_of(robots[0], robots[2]), placement_of(canvas, site))
     assert np.array_equal(placed.robots[[0, 2]], alone.robots)
+    for _ in range(20):
+        overlay.show_scene(placed)
+    image = canvas.grab().toImage()
+    assert overlay.robot_at(*expected(canvas, site, 70, 50)) == "r3"
+    for x, y in ((50, 50), (70, 65)):
+        at = expected(canvas, site, x, y).round().astype(int).tolist()
+        assert abs(QColor(image.pixel(*at)).red() - TRAIL.red()) < 30
 
 
 def test_the_viewport_is_not_filled_twice_where_the_scene_covers_it(canvas, site):

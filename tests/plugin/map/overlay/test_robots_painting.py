@@ -11,7 +11,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.robots_painter import Sprites
-from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer, in_view
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS, UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QSize
@@ -173,6 +173,18 @@ def test_accuracy_is_a_circle_of_so_many_metres_in_any_crs(canvas, site, crs):
             found.append(QColor(image.pixel(round(at[0]), round(at[1]))).name())
     assert "#ffffff" not in inside
     assert set(outside) == {"#ffffff"}
+
+
+def test_a_circle_larger_than_the_map_knows_takes_no_other_from_it(canvas, site):
+    scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.FRESH))
+    scene = dataclasses.replace(
+        scene, robots=dataclasses.replace(scene.robots, accuracy=np.array([20.0, 1e8]))
+    )
+    overlay = show(canvas, site, scene, "EPSG:4326")
+    placed, screen = SceneTransformer().placed(scene, placement_of(canvas, site)), overlay.screen()
+    rows, corners = robots_painter.circles(placed, in_view(placed, screen))
+    assert rows.tolist() == [0]
+    assert np.isfinite(corners).all()
 
 
 def test_many_robots_are_drawn_small_and_those_to_be_noticed_larger(canvas, site):

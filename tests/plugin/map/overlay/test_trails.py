@@ -13,7 +13,7 @@ from qgis.PyQt.QtGui import QImage, QPainter
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 200, 100)
 
 
-SAME = SimpleNamespace(to_map=lambda xy: xy)
+SAME = SimpleNamespace(to_map_or_nan=lambda xy: xy)
 """A site frame that is the map's CRS."""
 
 
