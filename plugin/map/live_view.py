@@ -181,12 +181,18 @@ class LiveView(QObject):
 
     def _show(self, at: np.ndarray) -> None:
         around = np.array([(dx, dy) for dx in (-1, 1) for dy in (-1, 1)]) * ZOOM_METRES
+        corners = at[:, None, :] + around
         try:
-            corners = self._desk.site_to_canvas.transform().to_map((at[:, None, :] + around).reshape(-1, 2))
+            transform = self._desk.site_to_canvas.transform()
+            places = transform.to_map_or_nan(corners)
+            places = places[np.isfinite(places[:, 0, 0])]
+            if len(places):
+                show_places(self._desk.canvas, places.reshape(-1, 2))
+            if len(places) < len(at):
+                # It raises the reason.
+                transform.to_map(corners.reshape(-1, 2))
         except MapTransformError as error:
             self._desk.warning.emit(str(error))
-            return
-        show_places(self._desk.canvas, corners)
 
     def follow(self, mode: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
@@ -274,7 +280,7 @@ class LiveView(QObject):
             xy = xy[[row for row in rows if row is not None]]
         there = xy[np.isfinite(xy).all(axis=1)]
         try:
-            places = self._desk.site_to_canvas.transform().to_map(there)
+            places = self._desk.site_to_canvas.transform().to_map_or_nan(there)
         except MapTransformError:
             # The frame reports it.
             return

@@ -67,6 +67,27 @@ def test_robots_are_placed_anew_when_the_map_gets_another_crs(at_desk, gateway, 
     wait(is_there, what="the robot in the other CRS")
 
 
+def test_a_robot_that_the_map_cannot_place_hinders_neither_following_nor_zooming(
+    at_desk, gateway, iface, make_robot, wait
+):
+    gateway.show(make_robot("far", 8e7, 9e7))
+    wait(lambda: at_desk.desk.state.robots.row("far") is not None)
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
+    ((x, y),) = at_desk.desk.site_to_canvas.transform().to_map(np.array([(50.0, 40.0)]))
+
+    def sees_r1():
+        return iface.canvas.extent().contains(QgsPointXY(x, y))
+
+    iface.canvas.setCenter(QgsPointXY(x + 1e5, y))
+    at_desk.view.zoom_to("r1", "far")
+    assert sees_r1()
+    assert any("has no place in EPSG:3857" in text for text in iface.texts())
+    iface.canvas.setCenter(QgsPointXY(x + 1e5, y))
+    assert not sees_r1()
+    at_desk.view.follow(FollowMode.ALL)
+    wait(sees_r1, what="r1, which is followed")
+
+
 YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
 """A CRS of its own, of which nobody knows where on the Earth it is."""
 
