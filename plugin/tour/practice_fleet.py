@@ -67,8 +67,13 @@ class PracticeFleet(QObject):
         return bool(self._processes)
 
     def start(self) -> None:
-        """Start the gateway, then the robots; :attr:`ready` or :attr:`failed` signals the result."""
+        """Start the gateway, then the robots; :attr:`ready` or :attr:`failed` signals the result.
+
+        Where the gateway is running already, :attr:`ready` is emitted at once.
+        """
         if self.running:
+            if self.url:
+                self.ready.emit(self.url)
             return
         if not self.program:
             self.failed.emit(how_to_install())

@@ -439,7 +439,8 @@ class TourAction(QObject):
 
     def _connect(self, url: str) -> None:
         panel = self._window.dock.connection_panel
-        self._url_before = panel.url()
+        if panel.url() != url:
+            self._url_before = panel.url()
         panel.use(GatewayConnection("", url))
         try:
             # Not by the button: that would store the address for the next session.

@@ -219,6 +219,23 @@ def test_when_it_is_removed_every_process_has_ended(qgis_app, wait, tmp_path, mo
     assert not any(is_running(pid) for pid in pids)
 
 
+def test_a_fleet_that_runs_is_connected_to_again_after_disconnecting(iface, wait, tmp_path):
+    tour = Tour(iface, PracticeFleet(program=str(program_in(tmp_path, then="cat"))))
+    panel = tour.window.dock.connection_panel
+    panel.use(GatewayConnection("", "ws://127.0.0.1:8765/desk"))
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    wait(lambda: "is connected" in tour.text("fleet_tour_said"), what="the fleet")
+    tour.desk.close_link()
+    tour.click("fleet_tour_offer")
+    wait(lambda: "is connected" in tour.text("fleet_tour_said"), what="the fleet again")
+    assert tour.desk.state.link.phase is not ConnectionPhase.CLOSED
+    tour.action.end()
+    assert panel.url() == "ws://127.0.0.1:8765/desk"
+    tour.remove()
+
+
 @pytest.mark.parametrize(
     ("robot", "why"),
     [('rm "$0"', "not run: "), ("echo '#!/bin/sh\nexit 3' > $0", "not run: it ended with code 3")],
