@@ -116,9 +116,9 @@ class RoadRouteTool(RouteTool):
     def _leave_out(self, *_: object) -> None:
         """Report that the routes to the places clicked last come too late, or not at all."""
         left_out = len(self._clicks)
+        self._drop_clicks()
         if not left_out:
             return
-        self._drop_clicks()
         self._way.clear()
         self.desk.warning.emit(
             tr_count(

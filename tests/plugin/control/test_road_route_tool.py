@@ -178,6 +178,21 @@ def test_after_a_right_click_a_way_that_was_not_found_leaves_the_tool_ready_for_
     assert len(roads.orders) == 1, "no way is shown to the mouse any more"
 
 
+def test_after_a_right_click_a_way_that_cannot_be_checked_leaves_the_tool_ready_for_another(
+    roads, monkeypatch
+):
+    def fail(_):
+        raise NotSentError("there is no check")
+
+    roads.hand.click((60, 40))
+    roads.hand.right_click(30, 30)
+    monkeypatch.setattr(roads.hand.iface.canvas.mapTool(), "set_command", fail)
+    roads.find()
+    assert roads.hand.complained("there is no check")
+    roads.hand.move(70, 40)
+    assert len(roads.orders) == 1, "no way is shown to the mouse any more"
+
+
 def test_who_sends_before_the_last_way_is_found_is_told_that_it_is_not_in_the_route(roads):
     roads.hand.click((60, 40))
     roads.find()
