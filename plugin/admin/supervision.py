@@ -440,8 +440,8 @@ class RobotRemoval:
         chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)
-        # Another gateway's robots of the same names are other ones.
-        self._desk.state.link_changed.connect(dialog.reject)
+        # Another fleet's robots of the same names are other ones.
+        self._desk.state.forgotten.connect(dialog.reject)
         dialog.finished.connect(self._forget_question)
         self._question = dialog
         dialog.open()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from fleet_supervisor.plugin.admin.supervision import RemovalDialog
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QComboBox, QLabel, QLineEdit, QPushButton
+from qgis.PyQt.QtWidgets import QAction, QComboBox, QDialog, QLabel, QLineEdit, QPushButton
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -106,10 +108,22 @@ def test_enter_and_escape_remove_nobody(asked, gateway, key):
     assert gateway.requests_of("remove_robots") == []
 
 
-def test_on_another_link_the_question_is_gone(asked, gone, gateway):
+def test_a_link_to_the_same_fleet_again_leaves_the_question_and_its_reason(asked, gone, gateway, wait):
     dialog = asked("old-01")
-    gone.actions.connect.trigger()
-    assert not dialog.isVisible()
+    QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_removal_reason"), "sold")
+    connect_as(gone, gateway, wait, "supervisor")
+    assert dialog.isVisible()
+    confirm(dialog)
+    wait(lambda: gateway.requests_of("remove_robots"), what="the request")
+    assert gateway.requests_of("remove_robots") == [{"robots": ["old-01"], "reason": "sold"}]
+
+
+def test_at_another_fleet_the_question_is_gone(asked, gone, gateway, site, wait):
+    dialog, closed = asked("old-01"), []
+    dialog.finished.connect(closed.append)
+    gateway.site = replace(site, id="other", name="Other")
+    connect_as(gone, gateway, wait, "supervisor")
+    wait(lambda: closed == [QDialog.DialogCode.Rejected], what="the end of the question")
     assert gateway.requests_of("remove_robots") == []
 
 
