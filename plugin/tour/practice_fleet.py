@@ -134,6 +134,7 @@ class PracticeFleet(QObject):
 
     def _robot_failed(self, *_: object) -> None:
         robot = self.sender()
+        assert isinstance(robot, QProcess)
         failed = robot.error() != QProcess.ProcessError.UnknownError
         why = robot.errorString() if failed else tr("it ended with code {code}", code=robot.exitCode())
         self.failed.emit(
