@@ -29,10 +29,8 @@ from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 
 GATEWAYS = 4
-ROBOTS, RATE = size(2500, 50), 1.0
+ROBOTS, RATE = size(1250, 50), 1.0
 """robots of a gateway, and how often each says where it is in a second."""
-STOPPED = size(1250, 50)
-"""robots of a gateway that are stopped."""
 NEAR, DESK_RATE = size(500, 20), 10.0
 """robots in a view that shows them one by one, and frames a second."""
 TURNS = size(6, 2)
@@ -287,7 +285,7 @@ def _subscriptions(count: int) -> list[dict[str, Any]]:
 def _stopped(database: PostgreSql) -> dict[str, list[Stop]]:
     """Return what came of emergency stops, by what was dead or frozen."""
     others = list(range(1, GATEWAYS))
-    with Fleet(database, GATEWAYS, STOPPED) as fleet:
+    with Fleet(database, GATEWAYS, ROBOTS) as fleet:
         desks = fleet.begin("benchmarks.cluster_crowd", asdict(Desks(fleet.addresses, 0, RATE, 0.0)))
         desks.line()
         # Robots have just got their maps.
@@ -326,8 +324,8 @@ def _stop(
             if number not in without:
                 crowd.tell(stop=made["stop"])
                 found = crowd.line()
-                if found["heard"] < STOPPED:
-                    missed = STOPPED - found["heard"]
+                if found["heard"] < ROBOTS:
+                    missed = ROBOTS - found["heard"]
                     raise RuntimeError(f"{missed} robots of gateway {number} did not hear of {made['stop']}")
                 last = max(last, found["last"])
                 in_force.append(min(next(by_desks), (found["first"] - made["began"]) * 1e3))
@@ -384,7 +382,7 @@ def report(turns: Turns, stops: dict[str, list[Stop]]) -> Part:
         **{"tick": POSITION_TICK_S * 1000, "rows": rows, "turns": TURNS, "seconds": SECONDS},
         **{"share": share, "apart": turns.share_apart()},
         across_goal=goal(f"p99 at most {LATEST_MS:.0f} ms", percentile(across, 99) <= LATEST_MS),
-        **{"stops": STOPS, "well_stops": WELL_STOPS, "stopped": GATEWAYS * STOPPED, "rows_of_stops": stopped},
+        **{"stops": STOPS, "well_stops": WELL_STOPS, "stopped": GATEWAYS * ROBOTS, "rows_of_stops": stopped},
         in_force_goal=goal(f"p99 at most {IN_FORCE_MS} ms", percentile(in_force, 99) <= IN_FORCE_MS),
         last_goal=goal(f"at most {LAST_MS} ms", last <= LAST_MS),
         share_goal=f"{goal(f'at least {SHARE}', share.median >= SHARE).capitalize()}.",
