@@ -10,8 +10,8 @@ from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QTimer
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel, QPushButton
 
+from tests.support.bridge.bridge_programs import wait_until
 from tests.support.fleet_panel import press
-from tests.support.patience import START
 
 
 def test_the_window_goes_on_while_a_gateway_hangs(at_desk, gateway, wait):
@@ -44,10 +44,8 @@ def test_after_a_blocked_window_the_newest_position_is_shown_first(at_desk, gate
     for x in range(100):
         gateway.show(make_robot("r1", float(x), 40))
     # The connection's thread receives all of them while the window does nothing.
-    buffer, until = at_desk.desk.connection._buffer, time.monotonic() + START
-    while newest_in(buffer) != 99.0:
-        assert time.monotonic() < until
-        time.sleep(0.01)
+    buffer = at_desk.desk.connection._buffer
+    wait_until(lambda: newest_in(buffer) == 99.0, what="all positions")
     shown = []
     at_desk.desk.state.updated.connect(
         lambda: shown.append(at_desk.desk.state.robots.view("r1", 0.0).report.x)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
-from tests.support.databases.database_client import PATIENCE_S, DatabaseClient
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.database_maker import DatabaseMaker
 
 CHANGES = [
@@ -43,10 +42,8 @@ def leave(client, new_database):
     ((backend,),) = client.sql("select pg_backend_pid()")
     client.close()
     other = DatabaseClient(new_database.another("postgresql"))
-    deadline = time.monotonic() + PATIENCE_S
-    while other.sql("select 1 from pg_stat_activity where pid = ?", backend):
-        assert time.monotonic() < deadline, f"the server holds a connection closed {PATIENCE_S} s ago"
-        time.sleep(0.01)
+    has_ended = "select not exists (select 1 from pg_stat_activity where pid = ?)"
+    wait_until(lambda: other.sql(has_ended, backend) == [(True,)], what="the end of the connection")
     other.close()
 
 
