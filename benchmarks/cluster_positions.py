@@ -37,7 +37,7 @@ TURNS = size(6, 2)
 """turns of each fleet."""
 SECONDS, SETTLE = size(8.0, 2.0), size(5.0, 2.0)
 """seconds of a turn that are watched, and those before, in which all have just begun to speak."""
-STOPS, WELL_STOPS = size(3, 1), size(12, 1)
+STOPS, WELL_STOPS = size(3, 1), size(30, 1)
 """emergency stops while something is dead or frozen, of each kind, and while all is well."""
 BUSY, CALM_WITHIN = 1.0, size(60.0, 5.0)
 """cores that all gateways take at most when what came of a stop is stored, and seconds until then at most."""
@@ -366,11 +366,12 @@ def report(turns: Turns, stops: dict[str, list[Stop]]) -> Part:
     in_force = [ms for stop in stops["all is well"] for ms in stop.in_force]
     last = max(stop.last for some in stops.values() for stop in some)
     stopped = table(
-        ["", "in force at a gateway, p50 / worst", "last robot, p50 / worst"],
+        ["", "in force at a gateway, p50 / p99", "worst", "last robot, p50 / worst"],
         [
             [
                 name,
-                median_and_worst([ms for stop in some for ms in stop.in_force]),
+                median_and_p99(times := [ms for stop in some for ms in stop.in_force]),
+                f"{max(times):.0f} ms",
                 median_and_worst([s.last for s in some]),
             ]
             for name, some in stops.items()

@@ -306,7 +306,9 @@ async def test_all_are_read_when_one_is_missing_and_once_in_a_while(owned, table
     await followed(owned)
     assert table.read_all == 2
     monkeypatch.setattr(owning, "ALL_S", 0.0)
-    assert (await followed(owned)).gateways == {"r2": "b"} and table.read_all == 3
+    assert (await followed(owned)).gateways == {} and table.read_all == 3, "r2 is where it was"
+    table.owners["r2"] = elsewhere(2)._replace(gw="c")
+    assert (await followed(owned)).gateways == {"r2": "c"}
 
 
 async def test_another_run_of_this_gateway_has_none_of_the_robots_of_the_one_before(owned, table):
