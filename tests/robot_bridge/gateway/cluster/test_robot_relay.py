@@ -205,6 +205,7 @@ def hand_over(place, here):
     for one in place.bus.sent:
         if isinstance(one, PositionBatch):
             here.exchange.receive("positions", CODEC.encode(one))
+    here.relay.apply_received()
     return [one.what for one in here.bus.sent if isinstance(one, Wake)]
 
 
@@ -283,3 +284,25 @@ def test_an_alarm_that_is_nowhere_is_no_message(where):
     broken = msgspec.structs.replace(message, alarms=[FencedRobot(*vars(replace(ALARM, x=where)).values())])
     there.exchange.receive(EVERYBODY, CODEC.encode(broken))
     assert len(there.heard) == 1
+
+
+def test_positions_that_cannot_be_applied_keep_no_others_back(place, here, monkeypatch, caplog):
+    here.robots.remove("r1")
+    observe, failed = here.robots.observe_elsewhere, []
+
+    def observe_or_fail(report):
+        if not failed:
+            failed.append(report)
+            raise ValueError("a fault")
+        return observe(report)
+
+    monkeypatch.setattr(here.robots, "observe_elsewhere", observe_or_fail)
+    for x in (1.5, 2.5):
+        place.robots.observe("r1", SendPos(x, 2.0, 0.0, 0.0), "yard", 1000.0)
+        place.exchange.receive(EVERYBODY, CODEC.encode(Wake("c", "positions")))
+        place.tick()
+        for one in place.bus.sent:
+            if isinstance(one, PositionBatch):
+                here.exchange.receive("positions", CODEC.encode(one))
+    here.relay.apply_received()
+    assert here.robots.pose("r1").x == 2.5 and "applying positions of gateway b" in caplog.text
