@@ -32,6 +32,10 @@ class RefusedError(BridgeError):
     """A request that was understood but is refused: unknown robot, target outside the site, ..."""
 
 
+class UsedIdError(RefusedError):
+    """The id of a command is that of an earlier command of another kind, or of another robot."""
+
+
 class OtherRunError(RefusedError):
     """A message of another robot under the account of the one that was admitted."""
 

@@ -31,7 +31,7 @@ from ..core.messages.base import (
 )
 from ..core.messages.commands import Send
 from ..core.messages.robots import Abort, Answer, Command, Request, SendImage, SendPos
-from ..core.messages.safety import EmergencyStop
+from ..core.messages.safety import understood_stop
 from . import jsonrpc
 
 log = logging.getLogger(__name__)
@@ -84,9 +84,9 @@ def _convert(
     cls = table.get(name)
     if cls is None:
         raise UnknownOperationError(f"unknown {kind} {name!r}; known are {', '.join(table)}")
-    if cls is EmergencyStop:
-        understood = EmergencyStop.understood(params)
-        if understood != params:
+    if _stops(cls, params):
+        understood = understood_stop(cls, params)
+        if understood != (params or {}):
             log.warning("%s: what cannot be understood of it is passed over: to stop is never refused", name)
         params = understood
     if params is not None and not isinstance(params, dict):
@@ -105,7 +105,7 @@ def _convert(
 def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
     """Refuse unknown parameters, except in requests that stop robots; raises MessageError."""
     cls = type(message)
-    if getattr(cls, "stops", False) or (isinstance(message, Send) and message.op == Abort.__name__):
+    if _stops(cls, params):
         for key in unknown_keys(cls, params):
             log.warning("%s: %s is no parameter of it, and passed over: to stop is never refused", name, key)
         return
@@ -113,6 +113,12 @@ def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
         refuse_unknown_keys(cls, params)
     except MessageError as error:
         raise MessageError(f"{name}: {error}") from None
+
+
+def _stops(cls: type, params: Any) -> bool:
+    """Return whether a request stops or holds robots; of ``send`` only one that sends an Abort."""
+    is_abort = cls is Send and isinstance(params, dict) and params.get("op") == Abort.__name__
+    return is_abort or getattr(cls, "stops", False)
 
 
 def _with_payload(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:

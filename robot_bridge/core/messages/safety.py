@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import dataclass, field, replace
+from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Enum
 from typing import Any, Literal
 
@@ -42,6 +42,31 @@ def check_reason(reason: str | None) -> None:
         raise MessageError(
             f"reason has {len(reason)} characters; give one line of at most {LONGEST_REASON} printable ones"
         )
+
+
+def understood_stop(request: type[DeskRequest[Any]], params: object) -> dict[str, object]:
+    """Return parameters of a request that stops robots with a valid id and reason, whatever was sent.
+
+    An invalid id is replaced by one derived from it, the same each time, so that the stop is done once. A
+    reason that does not fit a line of the log is adapted.
+    """
+    given = dict(params) if isinstance(params, dict) else {}
+    known = {field.name: field for field in fields(request)}  # type: ignore[arg-type]
+    sent = given.get("command")
+    if "command" in known and (sent is not None or known["command"].default is MISSING):
+        try:
+            check_command_id(sent if isinstance(sent, str) else "")
+        except MessageError:
+            id = uuid.uuid4() if sent is None else uuid.uuid5(uuid.NAMESPACE_OID, repr(sent))
+            given["command"] = str(id)
+    if "reason" in given:
+        given["reason"] = _reason_line(given["reason"])
+    return given
+
+
+def _reason_line(reason: object) -> str | None:
+    text = reason[:LONGEST_REASON] if isinstance(reason, str) else ""
+    return one_line(text, LONGEST_REASON).strip() or None
 
 
 def check_override(override: str | None) -> None:
@@ -107,8 +132,7 @@ class EmergencyReport:
 class EmergencyStop(DeskRequest[EmergencyReport]):
     """Stop every robot now and refuse motion commands until a supervisor clears it.
 
-    ``command`` is an id that the client chooses: sent twice, done once. A reason that does not fit a line of
-    the log is adapted, since a stop is never refused for its reason.
+    ``command`` is an id that the client chooses: sent twice, done once, until the stop is cleared.
     """
 
     method = "emergency_stop"
@@ -121,27 +145,10 @@ class EmergencyStop(DeskRequest[EmergencyReport]):
     def __post_init__(self) -> None:
         check_command_id(self.command)
 
-    @classmethod
-    def understood(cls, params: object) -> dict[str, object]:
-        """Return valid parameters of a stop, whatever was sent: a stop is never refused.
-
-        An invalid id is replaced by one derived from it, the same each time, so that the stop is done once.
-        """
-        given = dict(params) if isinstance(params, dict) else {}
-        sent = given.get("command")
-        try:
-            check_command_id(sent if isinstance(sent, str) else "")
-        except MessageError:
-            id = uuid.uuid4() if sent is None else uuid.uuid5(uuid.NAMESPACE_OID, repr(sent))
-            given["command"] = str(id)
-        if not isinstance(given.get("reason"), str):
-            given.pop("reason", None)
-        return given
-
     @property
     def line(self) -> str | None:
         """The reason as one line of the log."""
-        return one_line((self.reason or "")[:LONGEST_REASON], LONGEST_REASON).strip() or None
+        return _reason_line(self.reason)
 
 
 @dataclass(frozen=True)

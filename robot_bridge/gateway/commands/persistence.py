@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 from sqlalchemy import Connection
 from sqlalchemy.exc import IntegrityError, OperationalError, ProgrammingError
 
-from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from ...core.errors import DataRefusedError, RefusedError, StoreError, UncertainError, UsedIdError
 from ...core.logs import TroubleNews, log_and_continue
 from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SendPos, SetPosIni
@@ -73,6 +73,9 @@ def insert_commands(
 ) -> WrittenCommands:
     """Write new commands with their messages; raises RefusedError for the first that is refused."""
     known = commands.find_all(connection, [draft.order.command for draft in drafts])
+    for draft in drafts:
+        if (before := known.get(draft.order.command)) is not None:
+            check_same(before.report, draft.order)
     new = [draft for draft in drafts if draft.order.command not in known]
     for draft in new:
         if draft.refusal is not None:
@@ -94,6 +97,15 @@ def insert_commands(
         also(connection)
     issued = [written.get(d.order.command) or opened(known[d.order.command], d.order.message) for d in drafts]
     return WrittenCommands(issued, changed)
+
+
+def check_same(known: CommandReport, order: CommandOrder) -> None:
+    """Raise UsedIdError unless ``order`` is the ``known`` command of the same id, asked for again."""
+    if (known.robot, known.op) != (order.robot, type(order.message).__name__):
+        raise UsedIdError(
+            f"command {known.command!r} is a {known.op} of robot {known.robot!r} that was sent before; give "
+            "each command an id of its own, say a UUID"
+        )
 
 
 class _WriteSteps(BatchedWork[None]):

@@ -89,7 +89,7 @@ class CommandRequests:
         try:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
-            return await self._issued_before(send.command, refusal)
+            return await self._issued_before(send.command, send.robot, send.op, refusal)
         remarks = [f"override: {send.override}" if send.override else None, send.reason]
         reason = "; ".join(text for text in remarks if text) or None
         fenced = send.override is None
@@ -117,7 +117,7 @@ class CommandRequests:
         try:
             order = await self._order(request.command, self._robot_of(request), Abort.__name__, {}, operator)
         except RefusedError as refusal:
-            return await self._issued_before(request.command, refusal)
+            return await self._issued_before(request.command, request.robot, Abort.__name__, refusal)
         order = replace(order, reason=request.reason, aborts=request.aborts)
         return (await self._issue_aborts([order]))[0]
 
@@ -135,8 +135,22 @@ class CommandRequests:
         return Commands(await self._database.run(commands.newest, request.robot, request.limit))
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
-        """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-        return await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
+        """Store Aborts; those that are not stored within a second are sent by themselves as well.
+
+        One under the id of an earlier Abort is another one where its robot was sent on since: a script may
+        send the same id each time.
+        """
+        reports = await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
+        again = {
+            order.robot: replace(order, command=str(uuid.uuid4()))
+            for order, report in zip(orders, reports, strict=True)
+            if self._commands.drives_after(report)
+        }
+        if not again:
+            return reports
+        log.warning("%s: sent another Abort under an id that was used before", listed_names(sorted(again)))
+        renewed = await self._issue_aborts(list(again.values()))
+        return [next((new for new in renewed if new.robot == old.robot), old) for old in reports]
 
     async def send_if_unstored(
         self, orders: list[CommandOrder], storing: asyncio.Task[T], *, is_pause: bool = False
@@ -212,13 +226,15 @@ class CommandRequests:
                 log.error("Aborts of %s cannot be written: %s", listed_names(robots), error)
         return done
 
-    async def _issued_before(self, command: str, refusal: RefusedError) -> CommandReport:
+    async def _issued_before(
+        self, command: str, robot: str | None, op: str, refusal: RefusedError
+    ) -> CommandReport:
         """Return the present state of a command if it was issued before; raises ``refusal`` otherwise.
 
         A client without an answer repeats its request, when site, robots or task may have changed.
         """
         known = await self._database.run(commands.find, command)
-        if known is None:
+        if known is None or known.op != op or robot not in (None, known.robot):
             raise refusal
         return known
 

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import dataclasses
 import logging
+import uuid
 from collections.abc import (
     AsyncIterator,
     Awaitable,
@@ -22,10 +23,10 @@ from typing import Any
 from sqlalchemy import Connection
 
 from ...core.clock import Clock, steady_time
-from ...core.errors import DataRefusedError, RefusedError, StoreError
+from ...core.errors import DataRefusedError, RefusedError, StoreError, UsedIdError
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.robots import MOTION_OPS, Answer, OpAck, SendPos, SetPath
+from ...core.messages.robots import MOTION_OPS, Abort, Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
@@ -134,6 +135,11 @@ class CommandService(CommandReader):
         """Wait until the orders of a robot that are being stored are stored; raises StoreError."""
         async with self._held.of([robot]):
             return
+
+    def drives_after(self, abort: CommandReport) -> bool:
+        """Return whether the robot of an Abort has an open motion that was asked for after it."""
+        began = abort.steps[0].at
+        return any(c.is_motion and c.report.steps[0].at > began for c in self._open.of(abort.robot))
 
     def keep_aborts(self, aborts: Iterable[CommandOrder]) -> Future[bool] | None:
         """Store Aborts before any other message of their robots; return the writing of their notes."""
@@ -411,11 +417,16 @@ class CommandService(CommandReader):
     async def _store(
         self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: persistence.Also | None
     ) -> list[CommandReport]:
-        now = self._clock.time()
+        now, robots = self._clock.time(), [order.robot for order in orders]
         drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
-        issued, changed = await self._held.run(
-            [o.robot for o in orders], persistence.insert_commands, drafts, also
-        )
+        try:
+            issued, changed = await self._held.run(robots, persistence.insert_commands, drafts, also)
+        except UsedIdError as error:
+            if not all(isinstance(order.message, Abort) for order in orders):
+                raise
+            log.warning("%s: the Abort is given another id", error)
+            renamed = [dataclasses.replace(order, command=str(uuid.uuid4())) for order in orders]
+            return await self._store(renamed, found, also)
         for command in changed:
             self._apply(command)
         for command in issued:

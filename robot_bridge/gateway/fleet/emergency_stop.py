@@ -224,7 +224,7 @@ class EmergencyStops:
 
     @handles(EmergencyStop)
     async def stop(self, request: EmergencyStop, operator: str) -> EmergencyReport:
-        """Stop every robot; a request repeated under the same id is the same stop.
+        """Stop every robot; a request repeated under the same id is the same stop, until that is cleared.
 
         Returns when the stop is stored, or after a second if the database does not answer or cannot be
         written: it is in force all the same.
@@ -235,9 +235,16 @@ class EmergencyStops:
         return self.report()
 
     def begin(self, request: EmergencyStop, operator: str) -> None:
-        """Put a stop in force and send it to all, within this turn of the loop; :meth:`stop` stores it."""
-        if request.command not in self._seen:
-            self._begin(StopRow(request.command, self._clock.time(), _name(operator), request.line))
+        """Put a stop in force and send it to all, within this turn of the loop; :meth:`stop` stores it.
+
+        Under the id of a stop that was cleared it is another one, with an id derived from that: a button may
+        send the same id each time.
+        """
+        id = request.command
+        while id in self._seen and id not in self._in_force:
+            id = str(uuid.uuid5(uuid.NAMESPACE_OID, id))
+        if id not in self._seen:
+            self._begin(StopRow(id, self._clock.time(), _name(operator), request.line))
 
     def stop_elsewhere(self, stop: StopRow) -> None:
         """Put a stop in force that was made at another gateway, and send it to the robots here.

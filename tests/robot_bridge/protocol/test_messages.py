@@ -292,7 +292,7 @@ WRONG_DESK_REQUESTS = [
     ("find_robots", {"after": "x" * 64}, "after has 64 characters"),
     ("find_robots", {"limit": 0}, "limit is 0"),
     ("find_robots", {"limit": 501}, "limit is 501"),
-    ("send", {"command": "short", "robot": "r1", "op": "Abort"}, "command is 'short'"),
+    ("send", {"command": "short", "robot": "r1", "op": "SetPosEnd"}, "command is 'short'"),
     ("send", {"command": "long enough", "op": "Abort"}, "`robot`"),
     ("set_positions", {"positions": [{"robot": "r1", "x": 1}]}, "$.positions[0]"),
     ("set_positions", {"positions": [{"robot": "r1", "x": 1, "y": math.inf}]}, "y is inf"),

@@ -116,3 +116,35 @@ def test_an_emergency_stop_is_refused_for_nothing_that_is_said_with_it(params, c
 def test_the_reason_of_a_stop_is_put_right_or_left_out(reason, line):
     stop = decode_desk_request("emergency_stop", {"command": "stop-0001", "reason": reason})
     assert (stop.command, stop.line) == ("stop-0001", line)
+
+
+@pytest.mark.parametrize(
+    ("method", "params"),
+    [
+        ("abort", {"robot": "r1"}),
+        ("send", {"robot": "r1", "op": "Abort"}),
+        ("abort_all", {}),
+        ("pause_robot", {"robot": "r1"}),
+        ("pause_queue", {"robot": "r1"}),
+        ("pause_plan", {"plan": "gates"}),
+    ],
+)
+@pytest.mark.parametrize(
+    ("reason", "line"),
+    [("a\nb", "a b"), ("x" * 501, "x" * 500), (5, None), (" \t", None), ("lunch", "lunch")],
+)
+def test_what_stops_a_robot_is_refused_neither_for_its_reason_nor_for_its_id(method, params, reason, line):
+    for id in ("a", "", 7, None, "command-1"):
+        asked = decode_desk_request(method, {**params, "reason": reason, "command": id})
+        assert asked.reason == line
+        if (known := getattr(asked, "command", None)) is not None:
+            assert known == id if id == "command-1" else 8 <= len(known) <= 64
+    assert getattr(decode_desk_request(method, params), "reason", None) is None
+
+
+def test_another_command_is_refused_for_its_reason_and_for_its_id():
+    for wrong in ({"command": "a"}, {"command": "command-1", "reason": "a\nb"}):
+        with pytest.raises(MessageError, match="give"):
+            decode_desk_request(
+                "send", {"robot": "r1", "op": "SetPosEnd", "params": {"x": 1, "y": 2}, **wrong}
+            )

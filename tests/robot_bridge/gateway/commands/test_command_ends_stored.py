@@ -73,6 +73,47 @@ async def test_an_abort_asked_for_twice_is_done_once(ready):
     assert (await abort(ready, "y", robot="r1")).state.value == "queued"
 
 
+@pytest.mark.parametrize("by_send", [True, False])
+@pytest.mark.parametrize("robot", ["r1", "r2"])
+async def test_an_abort_under_the_id_of_another_command_is_done_under_another_id(ready, robot, by_send):
+    await ready.ready("r2")
+    await ready.send("a")
+    await send(ready, "b", "r2")
+    if by_send:
+        report = await ready.fleet.orders.send(Send("command-a", robot, "Abort"), "Ada")
+    else:
+        report = await abort(ready, "a", robot=robot)
+    assert (report.op, report.robot, report.state.value) == ("Abort", robot, "queued")
+    assert report.command != "command-a"
+    states = await ready.states()
+    assert states["a" if robot == "r1" else "b"] == "aborted"
+
+
+@pytest.mark.parametrize("other", [("r2", "SetPosEnd"), ("r1", "SetPosIni")])
+async def test_a_motion_under_the_id_of_another_command_is_refused(ready, other):
+    await ready.ready("r2")
+    await ready.send("a")
+    robot, op = other
+    with pytest.raises(RefusedError, match=r"'command-a' is a SetPosEnd of robot 'r1' .*; give each command"):
+        await ready.fleet.orders.send(Send("command-a", robot, op, {"x": 50, "y": 40}), "Ada")
+
+
+async def test_an_abort_under_the_id_of_an_earlier_one_stops_what_was_asked_since(ready):
+    def abort_all():
+        return ready.fleet.orders.abort_all(AbortAll("abort-all-1"), "Ada")
+
+    for again in (lambda: abort(ready, "x", robot="r1"), abort_all):
+        for id in ("a", "b"):
+            ready.now += 1.0
+            await ready.send(f"{id}{again is abort_all}")
+            ready.now += 1.0
+            await again()
+            assert (await ready.states())[f"{id}{again is abort_all}"] == "aborted"
+            assert ready.waiting() == ["Abort"]
+            await again()
+            assert ready.waiting() == ["Abort"]
+
+
 @pytest.mark.parametrize("what", [{}, {"robot": "r1", "aborts": "command-a"}, {"robot": "a b"}])
 def test_an_abort_names_one_thing(what):
     with pytest.raises(MessageError):

@@ -175,12 +175,23 @@ async def test_sent_twice_it_is_done_once(two, control):
     first = two.sql("select id from sa where op = 'Abort'")
     assert (await control.stop(by="Bob")).by == "Ada"
     assert two.sql("select id from sa where op = 'Abort'") == first
+    assert control.called == ["emergency-stop-0001"]
+
+
+async def test_under_the_id_of_one_that_was_cleared_it_is_another_one(two, control):
+    ids = [(await control.stop()).stop]
+    for _ in range(2):
+        await control.clear()
+        again = await control.stop()
+        assert again.in_force and again.stop not in ids
+        assert (await control.stop()).stop == again.stop
+        ids.append(again.stop)
     await control.clear()
-    assert (await control.stop()).in_force is False
     await two.restart()
-    again = Control(two)
-    assert (await again.stop()).in_force is False
-    assert (control.called, again.called) == (["emergency-stop-0001"], [])
+    restarted = Control(two)
+    last = await restarted.stop()
+    assert last.in_force and last.stop not in ids
+    assert control.called == [f"emergency-{id}" for id in ids] and len(restarted.called) == 1
 
 
 async def test_two_operators_at_once_are_both_heard_and_cleared_together(two, control):
