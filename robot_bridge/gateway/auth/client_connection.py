@@ -254,7 +254,7 @@ class ClientConnection(ServerConnection):
         self.was_cut = False
         """Whether it was cut for a stop."""
         self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
-        self._messages = self._patience = RateLimit(1.0, 1.0)
+        self._messages = self._patience = self._answers = RateLimit(1.0, 1.0)
         self._never_refused: Callable[[jsonrpc.Call], bool] = lambda _call: False
         self._ending: asyncio.Task[None] | None = None
         self._held = BackgroundTasks()
@@ -294,6 +294,7 @@ class ClientConnection(ServerConnection):
             TokenKind.LINK: (limits.link_messages_per_s, limits.link_burst),
         }[identity.kind]
         self._messages, self._patience = RateLimit(rate, float(burst)), RateLimit(rate / 10, float(burst))
+        self._answers = RateLimit(rate, float(burst))
         self.protocol.max_message_size = largest_message
         # Data buffered by the system for a slow client is old when it arrives, and a stop is behind it.
         own = self.transport.get_extra_info("socket")
@@ -431,7 +432,8 @@ class ClientConnection(ServerConnection):
         """Yield the messages; those beyond the limit are refused, and finally the connection is closed.
 
         A stop is yielded all the same until the client has closed its side, also behind what led to the end;
-        not that of a client that is expelled.
+        not that of a client that is expelled. Answers have a limit of their own, since nobody sends them
+        again: beyond it the connection is closed at once, and asks again when it is open once more.
         """
         async for frame in super().__aiter__():
             if self._expelled and self._ending is None:
@@ -439,14 +441,17 @@ class ClientConnection(ServerConnection):
             self._last_received_at = self.loop.time()
             is_over = self._ending is not None
             is_beyond = is_over or not self._messages.consume()
-            call = _call_in(frame) if is_beyond else None
-            if not is_beyond or (call is not None and self._never_refused(call)):
+            message = _message_in(frame) if is_beyond else None
+            is_answer = isinstance(message, jsonrpc.Reply)
+            if not is_beyond or (isinstance(message, jsonrpc.Call) and self._never_refused(message)):
                 yield frame
             elif is_over:
                 # Of what follows a message that was dropped nothing is carried out.
                 pass
-            elif self._patience.consume():
-                self._refuse(call)
+            elif is_answer and self._answers.consume():
+                yield frame
+            elif not is_answer and self._patience.consume():
+                self._refuse(message)
             else:
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
                 self._end(CloseCode.POLICY_VIOLATION, "too many messages a second")
@@ -497,10 +502,10 @@ class ClientConnection(ServerConnection):
             return "somebody"
         return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
 
-    def _refuse(self, call: jsonrpc.Call | None) -> None:
+    def _refuse(self, message: jsonrpc.Call | jsonrpc.Reply | None) -> None:
         text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
-        if call is not None and call.id is not None:
-            self.send_without_wait(jsonrpc.error(call.id, jsonrpc.TOO_MANY, text))
+        if message is not None and message.id is not None:
+            self.send_without_wait(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
 
     def _end(self, code: int, reason: str) -> None:
         self._ending = self.loop.create_task(self.expel(code, reason))
@@ -536,12 +541,11 @@ class ClientConnection(ServerConnection):
         self.transport.abort()
 
 
-def _call_in(frame: str | bytes) -> jsonrpc.Call | None:
+def _message_in(frame: str | bytes) -> jsonrpc.Call | jsonrpc.Reply | None:
     try:
-        message = jsonrpc.decode(frame)
+        return jsonrpc.decode(frame)
     except jsonrpc.FrameError:
         return None
-    return message if isinstance(message, jsonrpc.Call) else None
 
 
 def _is_answer(event: Any) -> bool:

@@ -118,6 +118,25 @@ async def test_positions_go_past_the_queue(host, client):
     assert host.came == [("at once", f"p{number}") for number in range(20)]
 
 
+async def test_answers_beyond_the_limit_of_messages_come_and_too_many_of_them_end_the_connection(
+    host, monkeypatch
+):
+    monkeypatch.setattr(OpenDoor, "limits", LimitSettings(robot_messages_per_s=1.0, robot_burst=5))
+    answer = json.dumps({"jsonrpc": "2.0", "id": 7, "result": {}})
+    async with connected(host, None, None) as client:
+        for number in range(8):
+            await client.send(f"x{number}")
+        await client.send(answer)
+        await host.until(6)
+        assert host.came == [("queued", f"x{number}") for number in range(5)] + [("queued", answer)]
+        for _ in range(10):
+            await client.send(answer)
+        async with asyncio.timeout(BUSY * 5):
+            await client.wait_closed()
+        assert client.close_code == 1008
+        assert host.came.count(("queued", answer)) == 5
+
+
 async def test_nothing_goes_past_a_message_that_waits(host, client):
     for message in ("wait", "stop"):
         await client.send(message)
