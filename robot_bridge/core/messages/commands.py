@@ -12,6 +12,9 @@ from .base import DeskRequest, Done, MessageError, Priority, Role, known_fields
 from .robots import Abort
 from .safety import check_override, check_reason
 
+ABORT_VALID_S = 86_400.0
+"""seconds for which an Abort waits for its robot, or for a database: then the robot does something else."""
+
 
 class CommandState(str, Enum):
     """The state of a command (see ``gateway/commands/active_command.py``)."""

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError, listed_names
 from ...core.messages.base import LONGEST_OPERATOR, one_line
+from ...core.messages.commands import ABORT_VALID_S
 from ...core.messages.safety import LONGEST_REASON, StoppedGateways
 from ..monitoring import until_tick, wait_at_most
 from ..storage.database import Database
@@ -284,8 +285,6 @@ def _fitting(names: Sequence[str]) -> list[str]:
 
 # --- Aborts that were sent and could not be stored: noted at every gateway, for the one that gets the robot
 
-NOTE_VALID_S = 86_400.0
-"""seconds after which a noted Abort is dropped: the robot does something else by then."""
 MOST_NOTED = 10_000
 """Aborts of other gateways noted here; of further ones only those who sent them know."""
 MOST_SETTLED = 10_000
@@ -370,7 +369,7 @@ class AbortRelay:
         while True:
             await asyncio.sleep(until_tick(TICK_S))
             now = self._membership.database_time()
-            old = [abort for abort in self._noted.values() if now - abort.at > NOTE_VALID_S]
+            old = [abort for abort in self._noted.values() if now - abort.at > ABORT_VALID_S]
             for abort in old:
                 log.warning("Abort %s of robot %r is dropped: it is too old", abort.command, abort.robot)
                 self._drop(abort.command)

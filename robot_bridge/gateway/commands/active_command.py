@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol
 
 from ...core.geometry import Polyline
 from ...core.messages.base import to_json
-from ...core.messages.commands import CommandReport, CommandState, CommandStep
+from ...core.messages.commands import ABORT_VALID_S, CommandReport, CommandState, CommandStep
 from ...core.messages.robots import MOTIONS, Abort, Command, OpAck, SendPos
 from ..model.arrival import Arrival, PathArrival, arrival_judge
 
@@ -168,10 +168,14 @@ class ActiveCommand:
     def expired(self, now: float, after: float) -> bool:
         """Return whether it was not fetched in time: by ``expires_at``, else within ``after`` seconds.
 
-        The Abort of an emergency stop never expires, however long its robot is away.
+        The Abort of an emergency stop never expires, however long its robot is away. Another one waits for a
+        day: the robot may be on its way to a target that it was sent before.
         """
         issued = self.report.steps[0].at
-        span = after if self.expires_at is None else self.expires_at - issued
+        if self.expires_at is not None:
+            span = self.expires_at - issued
+        else:
+            span = max(after, ABORT_VALID_S) if self.is_abort else after
         # One from as far in the future was issued before the clock was set back, at an unknown time.
         return not self.is_emergency and abs(now - issued) >= span
 

@@ -33,8 +33,8 @@ from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
 from ...core.messages.base import MessageError, check_command_id, check_expires_in, check_robot_name
+from ...core.messages.commands import ABORT_VALID_S
 from ...core.messages.robots import MOTION_OPS, Abort
-from ..cluster.stop_relay import NOTE_VALID_S
 from ..commands.active_command import CommandOrder, KeptAbort
 from ..commands.persistence import write_bare_aborts
 from ..commands.service import CommandService
@@ -339,7 +339,7 @@ class AbortJournal(JournalFile):
             aborts=aborts,
         )
         is_elsewhere = noted.optional("database", str) != self._database
-        if is_elsewhere or now - at > NOTE_VALID_S:
+        if is_elsewhere or now - at > ABORT_VALID_S:
             which = "of another database" if is_elsewhere else "too old"
             log.warning("%s: Abort %s of robot %r is dropped: it is %s", self._file, command, robot, which)
             return None

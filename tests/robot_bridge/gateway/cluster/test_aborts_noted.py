@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import msgspec
 import pytest
 
+from robot_bridge.core.messages.commands import ABORT_VALID_S
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.cluster import stop_relay
 from robot_bridge.gateway.cluster.bus import EVERYBODY, LARGEST_NOTIFICATION
@@ -21,7 +22,7 @@ from robot_bridge.gateway.cluster.messages import (
     NotedAbort,
     Wake,
 )
-from robot_bridge.gateway.cluster.stop_relay import AGAIN_S, ASKED_S, AT_ONCE, NOTE_VALID_S
+from robot_bridge.gateway.cluster.stop_relay import AGAIN_S, ASKED_S, AT_ONCE
 from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort, UnstoredAborts
 from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal
 from robot_bridge.gateway.fleet.registration import FleetAborts
@@ -132,7 +133,7 @@ def test_the_file_has_the_database_s_time_and_is_as_right_after_the_computer_s_c
     a.abort("r1")
     asked_at = fleet.now
     a.in_file()
-    fleet.now += NOTE_VALID_S - 60.0
+    fleet.now += ABORT_VALID_S - 60.0
     monkeypatch.setattr("time.time", lambda: fleet.now + 3600.0)
     a = fleet.gateways["a"] = Gateway("a", fleet)
     a.kept.restore({"r1"}.__contains__)
@@ -233,7 +234,7 @@ async def test_all_is_sent_again_and_dropped_after_a_day(fleet, abc, monkeypatch
     fleet.now += AGAIN_S
     await run_once(a, monkeypatch)
     assert b.noted == ["abort-0001"]
-    fleet.now += NOTE_VALID_S
+    fleet.now += ABORT_VALID_S
     await run_once(b, monkeypatch)
     assert b.noted == [] and "Abort abort-0001 of robot 'r1' is dropped: it is too old" in caplog.text
     a.in_file()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from robot_bridge.core.messages.commands import ABORT_VALID_S
 from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.gateway.commands.active_command import acknowledge_command, restart_commands
 from robot_bridge.gateway.model.arrival import TargetArrival
@@ -147,7 +148,7 @@ def test_what_is_too_old_is_given_up_unless_the_robot_had_taken_it_on():
 
 def test_of_two_ends_of_one_command_the_first_counts():
     task, abort = command(1, TARGET, DELIVERED), command(2, ABORT, DELIVERED)
-    _, ended = anew([task, abort], now=100.0 + AFTER)
+    _, ended = anew([task, abort], now=100.0 + ABORT_VALID_S)
     assert {one.report.command: last(one)[0] for one in ended} == {"c-1": "aborted", "c-2": "expired"}
 
 

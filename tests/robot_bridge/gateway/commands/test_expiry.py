@@ -37,3 +37,12 @@ def test_an_emergency_stop_waits_whatever_the_clock_says():
     stop = command(Abort(emergency=True))
     assert not stop.expired(ISSUED + 1e9, AFTER)
     assert not stop.expired(ISSUED - 1e9, AFTER)
+
+
+@pytest.mark.parametrize(
+    ("after", "expires_in", "span"), [(AFTER, None, 86400.0), (1e6, None, 1e6), (AFTER, 10.0, 10.0)]
+)
+def test_an_abort_waits_for_a_day_for_a_robot_that_may_be_on_its_way(after, expires_in, span):
+    abort = command(Abort(), expires_in)
+    assert not abort.expired(ISSUED + span - 0.1, after)
+    assert abort.expired(ISSUED + span, after)

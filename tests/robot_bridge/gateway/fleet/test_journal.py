@@ -16,8 +16,8 @@ import pytest
 from sqlalchemy import make_url
 
 from robot_bridge.core.errors import BridgeError
+from robot_bridge.core.messages.commands import ABORT_VALID_S
 from robot_bridge.core.messages.robots import Abort
-from robot_bridge.gateway.cluster.stop_relay import NOTE_VALID_S
 from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort, UnstoredAborts
 from robot_bridge.gateway.fleet.emergency_persistence import AbortJournal, StopJournal, journal_files
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
@@ -297,8 +297,8 @@ async def test_aborts_are_read_as_they_were_written_and_gone_once_none_is_left(a
 async def test_aborts_of_another_database_or_of_long_ago_stop_no_robot(aborts_file):
     now = time.time()
     young, old = (
-        kept_since(now - NOTE_VALID_S + 60, ABORTS[:1]),
-        kept_since(now - NOTE_VALID_S - 1, ABORTS[1:]),
+        kept_since(now - ABORT_VALID_S + 60, ABORTS[:1]),
+        kept_since(now - ABORT_VALID_S - 1, ABORTS[1:]),
     )
     AbortJournal(aborts_file, "db-1").write([*young, *old]).result()
     assert AbortJournal(aborts_file, "db-1").read() == left(young)
