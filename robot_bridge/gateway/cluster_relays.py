@@ -50,9 +50,9 @@ class ClusterRelays:
         )
         fleet.emergency.relay_by(self.stops)
         assert fleet.aborts is not None
-        open_commands = fleet.queue_context.commands
+        own = fleet.queue_context.commands.drafting
         self.requests = RequestRelay(
-            handlers, fleet.robots, membership, exchange, database, fleet.aborts, open_commands
+            handlers, fleet.robots, membership, exchange, database, fleet.aborts, own
         )
         self._aborts = fleet.aborts
         self._positions = PositionRelay(fleet.robots, membership, exchange, largest)

@@ -8,13 +8,15 @@ second goes over the bus as well, to the robot's open connection, and is noted a
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
 
 import msgspec
 
+from ...core.clock import steady_time
 from ...core.errors import (
     STORED_LATER,
     BridgeError,
@@ -90,6 +92,8 @@ ANSWER_WITHIN_S = 12.0
 """seconds that an operator waits: robots of a dead gateway are taken over within seven."""
 TOO_OLD_S = 20.0
 """seconds after which no request that moves a robot is begun: nobody expects it any more."""
+TAKEN_UP_WITHIN_S, TAKEN_UP_LOOK_S = 5.0, 0.05
+"""seconds in which a robot that came to this gateway has to be loaded, and between checks whether it is."""
 STORED_WITHIN_S = 1.0
 """seconds after which an unanswered Abort goes over the bus as well."""
 STAYS = "it stays noted, and is stored and sent by whichever gateway has the robot or gets it"
@@ -135,11 +139,17 @@ class AbortNoter(Protocol):
         """Have Aborts stored no more."""
 
 
-class OpenCommands(Protocol):
-    """The commands of this gateway that have not ended."""
+class OwnCommands(Protocol):
+    """The commands of this gateway."""
 
     def robot_of(self, command: str) -> str | None:
         """Return the robot of an open command."""
+
+    def asking(self, request: DeskRequest[Any], at: float) -> contextlib.AbstractContextManager[float]:
+        """Return the context in which ``request`` counts as asked ``at`` a time of the steady clock (s)."""
+
+    def note_stop(self, robots: Iterable[str]) -> None:
+        """Have no motion of ``robots`` stored that was asked by now."""
 
 
 class RequestRelay:
@@ -153,7 +163,7 @@ class RequestRelay:
         exchange: Exchange,
         database: Database,
         noter: AbortNoter,
-        own: OpenCommands,
+        own: OwnCommands,
     ) -> None:
         self._handlers = handlers
         self._robots = robots
@@ -169,7 +179,7 @@ class RequestRelay:
         self._doing = BackgroundTasks()
         self._links: list[Callable[[str, str], bool]] = []
         exchange.subscribe(Wake, self._woken)
-        exchange.subscribe(AbortCall, self._abort)
+        exchange.subscribe(AbortCall, lambda call: self._abort_here(call.robot, call.call_id))
 
     def reach(self, link: Callable[[str, str], bool]) -> None:
         """Set ``link``, called with a robot and a call id when another gateway has it aborted directly."""
@@ -191,6 +201,7 @@ class RequestRelay:
 
     async def _answer_of(self, robot: str, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
         """Return the answer of the gateway that owns ``robot``."""
+        asked = self._membership.database_time()
         if self._robots.gateway_of(robot) is None:
             try:
                 return await self._handlers.answer(request, operator)
@@ -198,7 +209,7 @@ class RequestRelay:
                 if not (isinstance(error, FencedError) or isinstance(error.__cause__, FencedError)):
                     raise
                 # Another gateway claimed it a moment ago.
-        outcome = (await self._relay([(robot, request)], operator))[robot]
+        outcome = (await self._relay([(robot, request)], operator, asked))[robot]
         if not isinstance(outcome, dict):
             raise outcome
         return outcome
@@ -263,16 +274,18 @@ class RequestRelay:
         return _joined(request, list(zip(parts.values(), results, strict=True)))
 
     async def _relay(
-        self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
+        self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str, asked: float | None = None
     ) -> dict[str, Outcome]:
         """Return by robot what became of requests about robots of other gateways, one for each robot.
+
+        They were ``asked`` at that time by the database's clock (s), else now.
 
         :raises StoreError, UnansweredError: when requests that stop no robot are not answered.
         """
         # An Abort makes a robot stand for a pause, too; but a pause that waited too long is refused.
         stops = [(robot, r) for robot, r in requests if _stops(r) or isinstance(r, PauseRobot)]
         answers: dict[str, str] = {}
-        relaying = asyncio.ensure_future(self._ask(requests, operator, answers))
+        relaying = asyncio.ensure_future(self._ask(requests, operator, asked, answers))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
         sent: set[str] = set()
         if stops and (not relaying.done() or relaying.exception() is not None):
@@ -338,14 +351,18 @@ class RequestRelay:
         return self._exchange.send(STOP, AbortCall(self._exchange.gateway, robot, call_id))
 
     async def _ask(
-        self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str, answers: dict[str, str]
+        self,
+        requests: Sequence[tuple[str, DeskRequest[Any]]],
+        operator: str,
+        asked: float | None,
+        answers: dict[str, str],
     ) -> None:
         """Add the answers of other gateways to ``answers`` by robot, as they come.
 
         :raises StoreError, UnansweredError: when not all have come.
         """
         rows = [NewRequest.of(robot, request) for robot, request in requests]
-        ids = await self._database.run(gateways.add_requests, rows, operator, self._membership.name)
+        ids = await self._database.run(gateways.add_requests, rows, operator, self._membership.name, asked)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)
         # The robots may have moved here meanwhile.
@@ -397,9 +414,11 @@ class RequestRelay:
         """Begin the waiting requests about robots of this gateway; raises StoreError."""
         if not await self._database.read(gateways.is_asked, self._membership.me):
             return
+        # Before the database says how old they are: none was asked earlier than it seems.
+        now = steady_time()
         begun = await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE)
         for request in begun:
-            self._doing.start(self._do(request))
+            self._doing.start(self._do(request, now - request.age))
         if len(begun) == MOST_AT_ONCE:
             # More may wait, such as Aborts of a whole fleet, for which this gateway is not woken again.
             self._asked.set()
@@ -408,8 +427,8 @@ class RequestRelay:
         """Delete what was not collected for an hour; raises StoreError."""
         await self._database.run(gateways.forget_requests, FORGET_S)
 
-    async def _do(self, request: TakenRequest) -> None:
-        answer = await self._answer_to(request)
+    async def _do(self, request: TakenRequest, asked: float) -> None:
+        answer = await self._answer_to(request, asked)
         with log_and_continue(log, f"answering gateway {request.asked_by}"):
             if await self._store_answer(request, msgspec.json.encode(answer).decode()):
                 self._exchange.wake("answers", request.asked_by)
@@ -434,19 +453,35 @@ class RequestRelay:
                     return False
             await asyncio.sleep(until_tick(LOOK_S))
 
-    async def _answer_to(self, taken: TakenRequest) -> dict[str, Any]:
+    async def _answer_to(self, taken: TakenRequest, asked: float) -> dict[str, Any]:
         try:
             request = decode_desk_request(taken.method, decode_json(taken.params))
             if not isinstance(request, (*RELAYED, SetPositions)):
                 raise MessageError(f"{taken.method} is nothing that one gateway does for another")
             _check_timely(taken, request)
-            return {"result": await self._handlers.answer(request, taken.operator)}
+            if not _stops(request) or getattr(request, "aborts", None) is not None:
+                await self._await_taken_up(taken.robot)
+            with self._own.asking(request, asked):
+                return {"result": await self._handlers.answer(request, taken.operator)}
         except Exception as error:
             if type(error).__name__ not in _PLAIN and not isinstance(
                 error, (OutdatedError, RefusedError, StoreError)
             ):
                 log_unforeseen(log, f"gateway {taken.asked_by}, {taken.method}")
             return {"error": _error_out(error)}
+
+    async def _await_taken_up(self, robot: str) -> None:
+        """Wait until a robot that came to this gateway is loaded, with its commands and stops.
+
+        :raises StoreError: when it is not, or went on to another gateway.
+        """
+        until = asyncio.get_running_loop().time() + TAKEN_UP_WITHIN_S
+        while (gateway := self._robots.gateway_of(robot)) is not None:
+            if asyncio.get_running_loop().time() > until:
+                raise StoreError(
+                    f"robot {robot!r} is between gateway {gateway} and this one; ask again in a moment"
+                )
+            await asyncio.sleep(TAKEN_UP_LOOK_S)
 
     # --- the bus ------------------------------------------------------------------------------------------
 
@@ -460,10 +495,9 @@ class RequestRelay:
         for event in set(self._answered.values()):
             event.set()
 
-    def _abort(self, call: AbortCall) -> None:
-        self._abort_here(call.robot, call.call_id)
-
     def _abort_here(self, robot: str, call_id: str) -> None:
+        # Also of a robot elsewhere: it may come here while a motion of it is checked.
+        self._own.note_stop([robot])
         for link in self._links:
             with log_and_continue(log, f"sending robot {robot!r} an Abort that is not stored"):
                 link(robot, call_id)

@@ -82,8 +82,8 @@ class CommandOrder:
     With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of`` unless that
     is and its end was not requested; NOTHING stands for an idle robot. ``task`` is the task of the robot's
     queue that it is for; an order outside the queue pauses the queue. One that is ``fenced`` is refused where
-    it leads into a keepout of the site, one with ``asked`` where its robot was stopped after that count of
-    stops.
+    it leads into a keepout of the site, one with ``asked`` where its robot was stopped after that time
+    (:func:`.steady_time`).
     """
 
     command: str
@@ -96,7 +96,7 @@ class CommandOrder:
     task: str | None = None
     instead_of: str | None = None
     fenced: bool = False
-    asked: int | None = None
+    asked: float | None = None
 
     @property
     def is_emergency(self) -> bool:

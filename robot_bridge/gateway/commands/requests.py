@@ -82,10 +82,10 @@ class CommandRequests:
     @handles(Send)
     async def send(self, send: Send, operator: str) -> CommandReport:
         """Issue one command; a repeated request returns its state, even if it would be refused by now."""
-        with self._commands.drafting.stops.asking(send.command) as asked:
+        with self._commands.drafting.asking(send) as asked:
             return await self._send(send, operator, asked)
 
-    async def _send(self, send: Send, operator: str, asked: int) -> CommandReport:
+    async def _send(self, send: Send, operator: str, asked: float) -> CommandReport:
         try:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
@@ -100,7 +100,11 @@ class CommandRequests:
     @handles(SetPositions)
     async def set_positions(self, request: SetPositions, operator: str) -> Commands:
         """Issue a target for each robot, all of them or none."""
-        positions, asked = request.positions, self._commands.drafting.stops.present
+        with self._commands.drafting.asking(request) as asked:
+            return await self._set_positions(request, operator, asked)
+
+    async def _set_positions(self, request: SetPositions, operator: str, asked: float) -> Commands:
+        positions = request.positions
         request.check_named_once()
         for position in positions:
             self._robots.check_known(position.robot)

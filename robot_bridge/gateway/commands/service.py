@@ -124,12 +124,12 @@ class CommandService(CommandReader):
         be stored is kept, and stored before any other message to its robot. One of whatever the robot does
         makes void the motions that are being checked when this is called.
         """
-        self.count_stop(order.robot for order in orders if order.is_stop)
+        self.note_stop(order.robot for order in orders if order.is_stop)
         return to_its_end(self._issue(orders, also))
 
-    def count_stop(self, robots: Iterable[str]) -> None:
+    def note_stop(self, robots: Iterable[str]) -> None:
         """Have no motion of ``robots`` stored that was asked by now, and is being checked."""
-        self.drafting.stops.add(robots)
+        self.drafting.note_stop(robots)
 
     async def await_stored(self, robot: str) -> None:
         """Wait until the orders of a robot that are being stored are stored; raises StoreError."""
@@ -157,12 +157,13 @@ class CommandService(CommandReader):
     def keep_left(self, left: Iterable[active_command.KeptAbort]) -> None:
         """Store those Aborts that another gateway left of robots of this one, before any other message."""
         mine = [o for o in left if o.order.robot in self._robots and self._fence.owns(o.order.robot)]
-        self.count_stop(one.order.robot for one in mine if one.order.is_stop)
+        self.note_stop(one.order.robot for one in mine if one.order.is_stop)
         self._unstored.keep_left(mine)
 
-    def keep_left_for(self, robots: Iterable[str]) -> None:
+    def keep_left_for(self, robots: Collection[str]) -> None:
         """Store the Aborts left for ``robots``, which this gateway has, before any other message."""
         self._unstored.keep_left_for(robots)
+        self.note_stop(kept.order.robot for kept in self._unstored.of(robots) if kept.order.is_stop)
 
     def end_left_for(self, robots: Iterable[str]) -> None:
         """Have nobody store the Aborts left for ``robots``, which are gone, or were never sent anything."""

@@ -7,10 +7,12 @@ import dataclasses
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, KeysView, Mapping, Sequence
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
+from ...core.clock import steady_time
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
+from ...core.messages.base import DeskRequest
 from ...core.messages.commands import CommandState
 from ...core.messages.robots import MOTIONS, Abort, Command, SetPath, SetPosEnd
 from ...core.messages.safety import Ability
@@ -247,40 +249,39 @@ class WaitingRobots(dict[str, HoldRow]):
         return None if row is None or row.task != task else row.other
 
 
-class StopCount:
-    """Counts Aborts and pauses, to find the motions that one overtakes while they are checked; no I/O.
+class StopTimes:
+    """Times of Aborts and pauses, to find the motions that one overtakes while they are checked; no I/O.
 
-    An order that was asked before a stop of its robot must not be stored behind that stop.
+    An order that was asked before a stop of its robot must not be stored behind that stop. Times are of
+    :func:`.steady_time`.
     """
 
     def __init__(self) -> None:
-        self.present = 0
-        self._newest: dict[str, int] = {}
-        self._asked: dict[str, int] = {}
+        self._newest: dict[str, float] = {}
+        self._asked: dict[str | int, float] = {}
 
     def add(self, robots: Iterable[str]) -> None:
-        """Count a stop of ``robots``."""
-        self.present += 1
-        self._newest.update(dict.fromkeys(robots, self.present))
+        """Note that ``robots`` are stopped now."""
+        self._newest.update(dict.fromkeys(robots, steady_time()))
 
     def forget(self, robot: str) -> None:
         """Forget the stops of a robot that is removed."""
         self._newest.pop(robot, None)
 
     @contextlib.contextmanager
-    def asking(self, command: str) -> Iterator[int]:
-        """Yield the count when ``command`` was asked; for a repetition meanwhile that of the first time."""
-        is_first = command not in self._asked
+    def asking(self, request: str | int, at: float | None = None) -> Iterator[float]:
+        """Yield when ``request`` was asked: ``at``, else now; for a repetition meanwhile the first time."""
+        is_first = request not in self._asked
         try:
-            yield self._asked.setdefault(command, self.present)
+            yield self._asked.setdefault(request, steady_time() if at is None else at)
         finally:
             if is_first:
-                del self._asked[command]
+                del self._asked[request]
 
     def check(self, order: CommandOrder) -> None:
         """Raise RefusedError for a motion whose robot was stopped after it was asked."""
         is_motion = isinstance(order.message, MOTIONS)
-        if is_motion and order.asked is not None and order.asked < self._newest.get(order.robot, 0):
+        if is_motion and order.asked is not None and order.asked <= self._newest.get(order.robot, -math.inf):
             raise RefusedError(
                 f"robot {order.robot!r}: an Abort or a pause came while this was checked; ask again if it is "
                 "still wanted"
@@ -297,7 +298,20 @@ class CommandValidator(CommandReader):
         self._robots = robots
         self._rules = rules
         self._waiting = waiting
-        self.stops = StopCount()
+        self.stops = StopTimes()
+
+    def note_stop(self, robots: Iterable[str]) -> None:
+        """Have no motion of ``robots`` stored that was asked by now."""
+        self.stops.add(robots)
+
+    def asking(
+        self, request: DeskRequest[Any], at: float | None = None
+    ) -> contextlib.AbstractContextManager[float]:
+        """Return the context of an operator's request, with the time when it was asked: ``at``, else now.
+
+        Within it the same request, or a repetition of it, counts as asked at that time (steady clock, s).
+        """
+        return self.stops.asking(getattr(request, "command", id(request)), at)
 
     async def prepare(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
         """Do the slow checks of orders; return for each its refusal, None where it may be sent."""

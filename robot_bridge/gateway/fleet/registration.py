@@ -51,25 +51,41 @@ AT_ONCE = 500
 """number of robots with their stored data read in one piece."""
 
 
+STOPPED_LATELY_S = 30.0
+"""seconds after an Abort or a pause in which a motion may still come that was asked before it, at another
+gateway: older requests are refused after 20 s, and clocks of gateways differ."""
+
+
 class StoredState(NamedTuple):
-    """Stored data of some robots, queues with their newest ended tasks, and the newest stop."""
+    """Stored data of some robots, queues with their newest ended tasks, and the newest stop.
+
+    ``stopped`` are those of the robots that were aborted or paused lately.
+    """
 
     robots: list[Robot]
     commands: list[StoredCommand]
     queues: list[tuple[Queue, list[QueuedTask]]]
     stop: StopRow | None
+    stopped: set[str]
 
 
-def _load(connection: Connection, robots: Sequence[str]) -> StoredState:
+def _load(connection: Connection, robots: Sequence[str], stopped_since: float) -> StoredState:
     """Return the stored data of some robots: one piece of work, since each waits for its turn.
 
     The stop is read last, so that a stop which ended motions that were read before is included.
     """
+    queues = stored_queues.load_with_ended(connection, robots, REPORTED_ENDED)
+    paused = {
+        queue.robot
+        for queue, _ in queues
+        if not queue.running and queue.at is not None and queue.at >= stopped_since
+    }
     return StoredState(
         stored_robots.load(connection, robots),
         stored_commands.still_open(connection, robots),
-        stored_queues.load_with_ended(connection, robots, REPORTED_ENDED),
+        queues,
         emergency_stops.newest(connection),
+        stored_commands.aborted_since(connection, robots, stopped_since) | paused,
     )
 
 
@@ -208,13 +224,15 @@ class Takeover:
     async def _read(self, some: Sequence[str]) -> None:
         self._commands.drop(some)
         self._queues.drop(some)
-        stored = await self._database.run(_load, some)
+        stored = await self._database.run(_load, some, self._clock.time() - STOPPED_LATELY_S)
         known = stored.robots
         self._commands.adopt(stored.commands)
         for robot in known:
             self._robots.restore(robot, self._clock.time())
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
         self._commands.keep_left_for([robot.name for robot in known])
+        # Another gateway may have been asked for a motion before, and hand it on by now.
+        self._commands.note_stop(stored.stopped)
         # One that is not stored yet is known to this gateway only by its Ready.
         new = set(some) - {robot.name for robot in known}
         for name in new:

@@ -67,7 +67,7 @@ class PauseService:
         self._robots.check_known(request.robot)
         # What is refused must not stop the robot while it waits for its turn.
         self._doing_and_kept(request.robot)
-        self._commands.count_stop([request.robot])
+        self._commands.note_stop([request.robot])
         left = self._left.get(request.robot, [])
         # An Abort of whatever the robot does by then, which holds its queue too, also where it does nothing.
         abort = CommandOrder(str(uuid.uuid4()), request.robot, Abort(), operator, _because_paused(request))

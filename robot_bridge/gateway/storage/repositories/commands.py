@@ -23,6 +23,7 @@ from sqlalchemy import (
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
+from ....core.messages.robots import Abort
 from ..rows import (
     Row,
     add_rows,
@@ -165,6 +166,14 @@ def of_kind_since(connection: Connection, op: str, since: float) -> list[Command
     """Return the commands of one kind that were issued at ``since`` or later, oldest first."""
     query = select(commands).where(commands.c.op == op, commands.c.created_at >= since)
     return [command.report for command in _load(connection, query.order_by(commands.c.sa_id))]
+
+
+def aborted_since(connection: Connection, robots: Sequence[str], since: float) -> set[str]:
+    """Return those of ``robots`` for which an Abort was issued at ``since`` or later."""
+    query = select(commands.c.robot).where(is_one_of(connection, commands.c.robot, robots))
+    return set(
+        connection.scalars(query.where(commands.c.created_at >= since, commands.c.op == Abort.__name__))
+    )
 
 
 def forget(connection: Connection, before: float, limit: int) -> int:

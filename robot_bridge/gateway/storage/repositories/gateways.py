@@ -299,7 +299,8 @@ _CLOCK = "extract(epoch from clock_timestamp())::double precision"
 _ADD = text(
     f"""
     insert into relayed_requests (robot, method, params, operator, asked_by, asked_at)
-    values (:robot, :method, :params, :operator, :asked_by, {_CLOCK}) returning id
+    values (:robot, :method, :params, :operator, :asked_by,
+        least(cast(:asked_at as double precision), {_CLOCK})) returning id
     """  # nosec B608 # names of ours
 )
 _OPEN = """
@@ -356,10 +357,14 @@ class TakenRequest(NamedTuple):
 
 
 def add_requests(
-    connection: Connection, requests: Sequence[NewRequest], operator: str, asked_by: str
+    connection: Connection,
+    requests: Sequence[NewRequest],
+    operator: str,
+    asked_by: str,
+    asked_at: float | None = None,
 ) -> list[int]:
-    """Write requests; return their ids in the same order."""
-    more = {"operator": operator, "asked_by": asked_by}
+    """Write requests, asked at ``asked_at`` (database time, s), else now; return their ids in order."""
+    more = {"operator": operator, "asked_by": asked_by, "asked_at": asked_at}
     return [int(connection.execute(_ADD, {**one._asdict(), **more}).scalar_one()) for one in requests]
 
 

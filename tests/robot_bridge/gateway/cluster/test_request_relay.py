@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-from dataclasses import fields
+import contextlib
+import math
+import time
+from dataclasses import fields, replace
 from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import text
 
+from robot_bridge.core.clock import steady_time
 from robot_bridge.core.errors import BridgeError, RefusedError, StoreError
 from robot_bridge.core.messages.base import DESK_REQUESTS, Role
 from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send
@@ -20,7 +24,8 @@ from robot_bridge.gateway.cluster.request_relay import RequestRelay
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.database import Database, read_address
 from robot_bridge.gateway.storage.repositories import gateways
-from robot_bridge.gateway.storage.repositories.gateways import Member, NewRequest
+from robot_bridge.gateway.storage.repositories.gateways import Member, NewRequest, TakenRequest
+from robot_bridge.gateway.storage.repositories.robots import FencedError
 from tests.support.patience import BUSY
 
 HAS_OWNER = text("insert into robot_owners (robot, gw, run, fence) values ('r1', 'a', 'run', 1)")
@@ -45,9 +50,13 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
     await database.run(lambda connection: connection.execute(HAS_OWNER))
     ids = [f"abort-{number:04}" for number in range(35)]
     requests = [NewRequest.of("r1", AbortTask(id, "r1", None, None)) for id in ids]
-    await database.run(gateways.add_requests, requests, "Ada", "b")
+    await database.run(gateways.add_requests, requests[1:], "Ada", "b")
+    # An hour ago, by the clock of who asked.
+    await database.run(gateways.add_requests, requests[:1], "Ada", "b", time.time() - 3600.0)
     handlers, fleet = Handlers(), SimpleNamespace(me=Member("a", "run"), name="a")
-    relay = RequestRelay(handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database, Notes(), Own())
+    relay = RequestRelay(
+        handlers, Robots(), fleet, Exchange("a", b"k" * 32, []), database, Notes(), own := Own()
+    )
     running = asyncio.create_task(relay.run())
     try:
         async with asyncio.timeout(10 * BUSY):
@@ -58,6 +67,7 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
         await asyncio.gather(running, return_exceptions=True)
         await database.close()
     assert sorted(handlers.asked) == ids
+    assert own.oldest == pytest.approx(steady_time() - 3600.0, abs=1800.0)
 
 
 class Own:
@@ -65,6 +75,15 @@ class Own:
 
     def robot_of(self, command):
         return "r2" if command == "second-01" else None
+
+    oldest = math.inf
+
+    def asking(self, _request, at):
+        self.oldest = min(self.oldest, at)
+        return contextlib.nullcontext()
+
+    def note_stop(self, _robots):
+        """Have motions that are checked end."""
 
 
 class Notes:
@@ -172,6 +191,53 @@ async def test_an_abort_or_a_pause_that_nobody_answers_stays_noted_and_who_asked
         "is stored and sent by whichever gateway has the robot or gets it: look whether they stand"
     )
     assert [(one.robot, one.by) for one in notes.noted] == [("r1", "Ada")] and notes.withdrawn == []
+
+
+async def test_what_a_robot_that_goes_elsewhere_was_asked_keeps_its_time(known, monkeypatch):
+    """It is older there than a stop that came meanwhile."""
+    known.ready("r2", 1, "websocket", 0.0)
+    relay, now, written = relay_by(known, Notes(), database := Away(0)), [5000.0], []
+
+    async def answer(_request, _operator):
+        now[0] += 3.0
+        raise StoreError("r2: connected to another gateway by now") from FencedError("r2")
+
+    async def run(work, *arguments):
+        if work is gateways.add_requests:
+            written.append(arguments[1:])
+        return await away(work, *arguments)
+
+    away, database.run = database.run, run
+    monkeypatch.setattr(relay._handlers, "answer", answer)
+    monkeypatch.setattr(relay._membership, "database_time", lambda: now[0])
+    assert await relay.answer(Send("target-01", "r2", "SetPosEnd", {"x": 1.0, "y": 2.0}), "Ada") == {}
+    assert written == [("Ada", "b", 5000.0)]
+
+
+async def test_a_robot_that_comes_here_is_loaded_before_anything_but_an_abort_is_done(known, monkeypatch):
+    monkeypatch.setattr(request_relay, "TAKEN_UP_LOOK_S", 0.0)
+    relay = relay_by(known, Notes(), Away(0))
+    target = Send("target-01", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0})
+    for_target = asyncio.create_task(relay._answer_to(taken(target), 0.0))
+    assert await relay._answer_to(taken(ABORTS["abort"]), 0.0) == {"result": {}}
+    assert relay._handlers.asked == ["abort-0001"]
+    known.restore(replace(known.get("r1"), gateway=None), 0.0)
+    assert await for_target == {"result": {}}
+    assert relay._handlers.asked == ["abort-0001", "target-01"]
+    # One that has gone on is not done here.
+    known.let_go("r1", "c")
+    monkeypatch.setattr(request_relay, "TAKEN_UP_WITHIN_S", 0.0)
+    answer = await relay._answer_to(taken(target), 0.0)
+    assert answer == {
+        "error": {
+            "kind": "StoreError",
+            "text": "robot 'r1' is between gateway c and this one; ask again in a moment",
+        }
+    }
+
+
+def taken(request):
+    return TakenRequest(1, *NewRequest.of("r1", request), "Ada", "a", 0.0, None)
 
 
 class Unread:

@@ -9,16 +9,25 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.json_decoder import decode_json
 from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send, SetPositions, TargetPosition
 from robot_bridge.core.messages.queues import PauseRobot
 from robot_bridge.core.messages.robots import Abort, SetPosEnd
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
+from robot_bridge.gateway.cluster import request_relay
+from robot_bridge.gateway.cluster.bus import STOP
+from robot_bridge.gateway.cluster.messages import AbortCall, Exchange
+from robot_bridge.gateway.cluster.request_relay import RequestRelay
 from robot_bridge.gateway.commands import requests as order_module
 from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort
-from robot_bridge.gateway.commands.validation import StopCount
+from robot_bridge.gateway.commands.validation import StopTimes
+from robot_bridge.gateway.model.events import RequestHandlers
+from robot_bridge.gateway.storage.repositories import gateways
+from robot_bridge.gateway.storage.repositories.gateways import NewRequest, TakenRequest
 from tests.support.bridge.queue_line import Line, task
 from tests.support.patience import until
 
+KEY = b"k" * 32
 WGS84 = "EPSG:4326"
 REFUSED = "robot 'r1': an Abort or a pause came while this was checked; ask again if it is still wanted"
 
@@ -64,6 +73,26 @@ async def left_elsewhere(fleet):
     fleet._commands.keep_left([KeptAbort(order, fleet._clock.time(), is_left=True)])
 
 
+async def left_for_its_gateway(fleet):
+    order = CommandOrder("abort-0001", "r1", Abort(), "Ada")
+    fleet._commands._unstored.keep_left([KeptAbort(order, fleet._clock.time(), is_left=True)])
+    fleet._commands.keep_left_for(["r1"])
+
+
+def relay_of(fleet, database=None):
+    """Return what relays requests to this gateway, and its end of the bus."""
+    exchange, me = Exchange("b", KEY, []), SimpleNamespace(me=None)
+    handlers, own = RequestHandlers(fleet.orders), fleet._commands.drafting
+    return RequestRelay(handlers, fleet.robots, me, exchange, database, None, own), exchange
+
+
+async def over_the_bus(fleet):
+    """As an Abort or a pause comes from another gateway whose database does not answer."""
+    here, there = relay_of(fleet)[1], Exchange("a", KEY, [])
+    there._buses = [SimpleNamespace(publish=lambda *message: here.receive(*message) or True)]
+    assert there.send(STOP, AbortCall("a", "r1", "abort-0001"))
+
+
 STOPS = {
     "abort": lambda fleet: fleet.orders.abort(AbortTask("abort-0001", "r1"), "Ada"),
     "abort_all": lambda fleet: fleet.orders.abort_all(AbortAll("abort-0001"), "Ada"),
@@ -71,6 +100,8 @@ STOPS = {
     "pause": lambda fleet: fleet.pauses.pause(PauseRobot("r1"), "Ada"),
     "emergency": emergency,
     "elsewhere": left_elsewhere,
+    "over the bus": over_the_bus,
+    "left for its gateway": left_for_its_gateway,
 }
 
 
@@ -195,11 +226,64 @@ async def test_a_command_that_is_stored_is_answered_as_it_stands_after_an_abort(
     assert (await again).state.value == "aborted"
 
 
-def test_a_count_keeps_nothing_of_robots_and_commands_that_are_gone():
-    count = StopCount()
-    count.add(["r1", "r2"])
-    count.forget("r1")
-    with count.asking("command-a") as asked:
-        assert asked == count.present == 1
-    assert (count._newest, count._asked) == ({"r2": 1}, {})
-    count.check(CommandOrder("command-a", "r2", SetPosEnd(1.0, 2.0), "Ada", asked=asked))
+def test_of_robots_and_commands_that_are_gone_no_times_are_kept():
+    times = StopTimes()
+    times.add(["r1", "r2"])
+    times.forget("r1")
+    with times.asking("command-a") as asked:
+        pass
+    assert (times._newest.keys(), times._asked) == ({"r2"}, {})
+    times.check(CommandOrder("command-a", "r2", SetPosEnd(1.0, 2.0), "Ada", asked=asked))
+
+
+class Relayed:
+    """The database with a request of another gateway that was asked ``age`` seconds ago."""
+
+    def __init__(self, request, age):
+        self.request, self.age, self.answer = request, age, None
+
+    async def read(self, _work, *_arguments):
+        return True
+
+    async def run(self, work, *arguments):
+        if work is gateways.begin_requests:
+            return [TakenRequest(1, *NewRequest.of("r1", self.request), "Ada", "a", self.age, None)]
+        self.answer = decode_json(arguments[1])
+
+
+RELAYED = {
+    "send": target(),
+    "positions": SetPositions([TargetPosition("r1", 16.0, 48.0)]),
+}
+
+
+@pytest.mark.parametrize("request_", RELAYED.values(), ids=RELAYED)
+@pytest.mark.parametrize(("age", "is_late"), [(60.0 * 60.0, False), (0.0, True)])
+async def test_a_motion_asked_at_another_gateway_before_a_stop_is_not_sent_after_it(
+    two, monkeypatch, request_, age, is_late
+):
+    monkeypatch.setattr(request_relay, "TOO_OLD_S", 2 * age)
+    relay, _ = relay_of(two.fleet, database := Relayed(request_, age))
+    await STOPS["abort"](two.fleet)
+    await relay.begin_waiting()
+    await until(lambda: database.answer)
+    if is_late:
+        assert "result" in database.answer and two.waiting("r1") == ["Abort", "SetPosEnd"]
+    else:
+        assert database.answer == {"error": {"kind": "RefusedError", "text": REFUSED}}
+        assert two.waiting("r1") == ["Abort"]
+
+
+async def test_a_stop_that_comes_while_what_another_gateway_asks_is_read_came_after_it(two):
+    relay, _ = relay_of(two.fleet, database := Relayed(target(), 0.0))
+    run = database.run
+
+    async def run_and_stop(work, *arguments):
+        if work is gateways.begin_requests:
+            await STOPS["abort"](two.fleet)
+        return await run(work, *arguments)
+
+    database.run = run_and_stop
+    await relay.begin_waiting()
+    await until(lambda: database.answer)
+    assert database.answer["error"]["text"] == REFUSED

@@ -330,7 +330,7 @@ async def test_a_command_that_is_being_stored_when_its_robot_is_paused_is_stoppe
     sending = asyncio.create_task(line.yard.send("y", x=70.0, y=40.0))
     await begun.wait()
     pausing = asyncio.create_task(pause(line))
-    await until(lambda: line.yard.fleet._commands.drafting.stops.present)
+    await until(lambda: line.yard.fleet._commands.drafting.stops._newest)
     released.set()
     await asyncio.gather(sending, pausing)
     await line.reach(35.0, 40.0)

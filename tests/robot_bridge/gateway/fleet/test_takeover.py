@@ -7,9 +7,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import PauseRobot
 from robot_bridge.gateway.cluster import ownership as owning
 from robot_bridge.gateway.cluster.ownership import OwnerChanges
+from robot_bridge.gateway.fleet import registration
 from robot_bridge.gateway.fleet.registration import StoredState, Takeover
 from robot_bridge.gateway.model.events import EventBus, RobotLeft
 from robot_bridge.gateway.model.robots import Robots
@@ -105,16 +109,33 @@ async def test_an_abort_left_for_a_robot_that_was_removed_ends_when_another_come
     """One with open commands is there, and stored in a moment."""
     ended, known = [], Robots()
     known.ready("new", 1, "websocket", 0.0)
-    stored = StoredState([], [SimpleNamespace(report=SimpleNamespace(robot="sent on"))], [], None)
+    stored = StoredState(
+        [], [SimpleNamespace(report=SimpleNamespace(robot="sent on"))], [], None, {"stopped"}
+    )
 
-    async def run(_work, _names):
+    async def run(_work, _names, _since):
         return stored
 
-    names = "drop", "adopt", "keep_left_for", "begin", "take_over"
-    ignored = SimpleNamespace(**dict.fromkeys(names, lambda *_of: None), end_left_for=ended.extend)
-    rest = ignored, ignored, ignored, ignored, SimpleNamespace(run=run), None
+    names, stopped = ("drop", "adopt", "keep_left_for", "begin", "take_over"), []
+    ignored = SimpleNamespace(
+        **dict.fromkeys(names, lambda *_of: None), end_left_for=ended.extend, note_stop=stopped.extend
+    )
+    rest = ignored, ignored, ignored, ignored, SimpleNamespace(run=run), ManualClock()
     await Takeover(None, None, known, *rest, EventBus())._read(["new", "sent on"])
     assert ended == ["new"] and "new" not in known
+    assert stopped == ["stopped"]
+
+
+async def test_robots_that_were_stopped_lately_are_known_when_they_are_taken_over(two):
+    """A motion may still come that was asked before, at the gateway that had them."""
+    began = two.clock.time()
+    await two.ready("r3")
+    assert (await two.database.run(registration._load, ["r1", "r2", "r3"], began)).stopped == set()
+    await two.fleet.orders.abort(AbortTask("abort-0001", "r1"), "Ada")
+    await two.fleet.pauses.pause(PauseRobot("r2"), "Ada")
+    assert (await two.database.run(registration._load, ["r1", "r2", "r3"], began)).stopped == {"r1", "r2"}
+    assert (await two.database.run(registration._load, ["r2"], began)).stopped == {"r2"}
+    assert (await two.database.run(registration._load, ["r1", "r2"], began + 1.0)).stopped == set()
 
 
 async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership):
@@ -149,12 +170,12 @@ async def test_gateways_are_asked_where_robots_are_though_others_could_not_be_ta
     ignored, held = SimpleNamespace(drop=lambda _robots: None), SimpleNamespace(forget=lambda _robot: None)
     faults = [StoreError("away")]
 
-    async def run(_work, names):
+    async def run(_work, names, _since):
         raise faults.pop()
 
     database = SimpleNamespace(run=run)
     takeover = Takeover(
-        ownership, exchange, known, ignored, ignored, held, ignored, database, None, EventBus()
+        ownership, exchange, known, ignored, ignored, held, ignored, database, ManualClock(), EventBus()
     )
     found = [OwnerChanges({"r1"}, {"r9"}, set(), {"r1": "b"}), OwnerChanges(set(), set(), set(), {"r1": "b"})]
 
