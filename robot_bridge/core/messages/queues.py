@@ -279,6 +279,11 @@ class PauseRobot(DeskRequest[QueueReport]):
         base.check_robot_name(self.robot)
         check_reason(self.reason)
 
+    @property
+    def abort_reason(self) -> str:
+        """The reason of the Abort by which the robot is paused."""
+        return f"paused: {self.reason}" if self.reason else "paused"
+
 
 @dataclass(frozen=True)
 class ResumeQueue(DeskRequest[QueueReport]):

@@ -171,6 +171,8 @@ class NotedAbort(msgspec.Struct, array_like=True, frozen=True):
     aborts: Id | None = None
     expires_in: Annotated[float, Meta(gt=0, le=1e12)] | None = None
     emergency: bool = False
+    of_pause: bool = False
+    """Whether a failed pause has left it: another one that succeeds makes it void."""
 
 
 class AbortsNoted(BusMessage, frozen=True, tag="aborts"):

@@ -116,7 +116,6 @@ _PLAIN: dict[str, type[Exception]] = {
     for cls in (MessageError, ForbiddenError, BusyError, DataRefusedError, StoreError, RefusedError)
 }
 
-
 Outcome = dict[str, Any] | BridgeError | MessageError
 """The result of a request, or why there is none."""
 
@@ -135,8 +134,8 @@ class AbortNoter(Protocol):
     def note_aborts(self, aborts: Sequence[NotedAbort]) -> None:
         """Have Aborts stored, and sent before anything else of their robots."""
 
-    def withdraw(self, ids: Sequence[str]) -> None:
-        """Have Aborts stored no more."""
+    def withdraw_pauses(self, robots: Iterable[str]) -> None:
+        """Have what failed pauses of ``robots`` have left stored no more."""
 
 
 class OwnCommands(Protocol):
@@ -172,8 +171,6 @@ class RequestRelay:
         self._database = database
         self._noter = noter
         self._own = own
-        self._paused: dict[str, str] = {}
-        """the ids of the Aborts noted for pauses that could not be relayed, by robot."""
         self._asked = asyncio.Event()
         self._answered: dict[int, asyncio.Event] = {}
         self._doing = BackgroundTasks()
@@ -306,8 +303,7 @@ class RequestRelay:
         for robot, answer in answers.items():
             outcomes[robot] = _outcome_in(answer, [robot] if robot in sent else [])
         # Those that stand: what the last pause has left would end what they do next.
-        done = [robot for robot, _ in stops if isinstance(outcomes[robot], dict)]
-        self._noter.withdraw([id for robot in done if (id := self._paused.pop(robot, None))])
+        self._noter.withdraw_pauses(robot for robot, _ in stops if isinstance(outcomes[robot], dict))
         return outcomes
 
     def _noted_failure(
@@ -319,10 +315,9 @@ class RequestRelay:
     ) -> StoreError | RefusedError:
         """Return what says that Aborts are noted, and to whom they went. A pause that fails becomes one."""
         paused = [self._noted(robot, r, operator) for robot, r in stops if isinstance(r, PauseRobot)]
-        self._noter.note_aborts(paused)
         # Each takes the place of the one that the last pause has left.
-        self._noter.withdraw([id for abort in paused if (id := self._paused.pop(abort.robot, None))])
-        self._paused.update((abort.robot, abort.command) for abort in paused)
+        self._noter.withdraw_pauses(abort.robot for abort in paused)
+        self._noter.note_aborts(paused)
         to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
         if isinstance(error, UnansweredError):
             what = unstored_abort(to, is_pause=bool(paused), may_be_stored=True)
@@ -331,9 +326,8 @@ class RequestRelay:
         return StoreError(f"{error}. {what}; {STORED_LATER}: look whether they stand")
 
     def _noted(self, robot: str, request: DeskRequest[Any], operator: str) -> NotedAbort:
-        reason: str | None = getattr(request, "reason", None)
-        if isinstance(request, PauseRobot):
-            reason = f"paused: {reason}" if reason else "paused"
+        is_pause = isinstance(request, PauseRobot)
+        reason: str | None = getattr(request, "abort_reason" if is_pause else "reason", None)
         return NotedAbort(
             getattr(request, "command", str(uuid.uuid4())),
             robot,
@@ -342,6 +336,7 @@ class RequestRelay:
             reason,
             getattr(request, "aborts", None),
             getattr(request, "expires_in", None),
+            of_pause=is_pause,
         )
 
     def _send_abort(self, robot: str, request: DeskRequest[Any]) -> bool:
@@ -476,11 +471,9 @@ class RequestRelay:
         :raises StoreError: when it is not, or went on to another gateway.
         """
         until = asyncio.get_running_loop().time() + TAKEN_UP_WITHIN_S
-        while (gateway := self._robots.gateway_of(robot)) is not None:
+        while self._robots.gateway_of(robot) is not None:
             if asyncio.get_running_loop().time() > until:
-                raise StoreError(
-                    f"robot {robot!r} is between gateway {gateway} and this one; ask again in a moment"
-                )
+                raise StoreError(f"robot {robot!r} goes from one gateway to another; ask again in a moment")
             await asyncio.sleep(TAKEN_UP_LOOK_S)
 
     # --- the bus ------------------------------------------------------------------------------------------

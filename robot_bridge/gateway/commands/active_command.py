@@ -83,7 +83,7 @@ class CommandOrder:
     is and its end was not requested; NOTHING stands for an idle robot. ``task`` is the task of the robot's
     queue that it is for; an order outside the queue pauses the queue. One that is ``fenced`` is refused where
     it leads into a keepout of the site, one with ``asked`` where its robot was stopped after that time
-    (:func:`.steady_time`).
+    (:func:`.steady_time`). ``of_pause``: an Abort that a failed pause has left, void once another succeeds.
     """
 
     command: str
@@ -97,6 +97,7 @@ class CommandOrder:
     instead_of: str | None = None
     fenced: bool = False
     asked: float | None = None
+    of_pause: bool = False
 
     @property
     def is_emergency(self) -> bool:
@@ -483,12 +484,18 @@ class UnstoredAborts:
         return [kept for kept in mine if kept.order.command not in self._aside]
 
     @contextlib.contextmanager
-    def aside(self, orders: Iterable[CommandOrder]) -> Iterator[None]:
-        """Keep Aborts noted, but not due, while something else is tried that replaces them."""
-        ids = {order.command for order in orders}
+    def replacing_failed_pauses(self, robot: str) -> Iterator[None]:
+        """Keep what failed pauses have left noted, not due, while another one is tried; forget it after that.
+
+        It stays as it is where that fails.
+        """
+        left = [kept.order for kept in self._kept.get(robot, {}).values() if kept.order.of_pause]
+        ids = {order.command for order in left}
         self._aside |= ids
         try:
             yield
+            for order in left:
+                self.discard(order)
         finally:
             self._aside -= ids
 

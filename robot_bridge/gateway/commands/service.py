@@ -150,9 +150,14 @@ class CommandService(CommandReader):
         for order in aborts:
             self._unstored.discard(order)
 
-    def aborts_aside(self, aborts: Iterable[CommandOrder]) -> contextlib.AbstractContextManager[None]:
-        """Store Aborts no sooner than what is tried meanwhile has failed; they stay noted."""
-        return self._unstored.aside(aborts)
+    def replacing_failed_pauses(self, robot: str) -> contextlib.AbstractContextManager[None]:
+        """Store what failed pauses of a robot have left no sooner than what is tried meanwhile has failed."""
+        return self._unstored.replacing_failed_pauses(robot)
+
+    async def store_kept(self, robot: str) -> None:
+        """Store the kept Aborts of a robot, if there are any; raises StoreError."""
+        if self._unstored.of([robot]):
+            await to_its_end(self._issue_unstored(robot))
 
     def keep_left(self, left: Iterable[active_command.KeptAbort]) -> None:
         """Store those Aborts that another gateway left of robots of this one, before any other message."""

@@ -318,6 +318,7 @@ class AbortJournal(JournalFile):
             "aborts": order.aborts,
             "expires_in": order.expires_in,
             "emergency": order.is_emergency,
+            "of_pause": order.of_pause,
             "at": kept.at,
             "database": self._database,
         }
@@ -337,6 +338,7 @@ class AbortJournal(JournalFile):
             noted.reason,
             expires_in=expires_in,
             aborts=aborts,
+            of_pause=noted.optional("of_pause", bool) is True,
         )
         is_elsewhere = noted.optional("database", str) != self._database
         if is_elsewhere or now - at > ABORT_VALID_S:

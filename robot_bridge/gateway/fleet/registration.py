@@ -312,9 +312,9 @@ class FleetAborts:
             self._relay.note_aborts(aborts)
             self.keep(aborts)
 
-    def withdraw(self, ids: Sequence[str]) -> None:
-        """Have Aborts stored no more, neither here nor elsewhere."""
-        if ids:
+    def withdraw_pauses(self, robots: Iterable[str]) -> None:
+        """Have what failed pauses of ``robots`` have left stored no more, neither here nor elsewhere."""
+        if ids := [abort.command for abort in self._relay.left_for(robots) if abort.of_pause]:
             self._relay.settle(ids)
             self.discard(ids)
 
@@ -344,7 +344,7 @@ class FleetAborts:
 
 
 def _noted(order: CommandOrder, at: float) -> NotedAbort:
-    more = order.aborts, order.expires_in, order.is_emergency
+    more = order.aborts, order.expires_in, order.is_emergency, order.of_pause
     return NotedAbort(order.command, order.robot, order.operator, at, order.reason, *more)
 
 
@@ -357,6 +357,7 @@ def _kept(noted: NotedAbort, at: float) -> KeptAbort:
         noted.reason,
         expires_in=noted.expires_in,
         aborts=noted.aborts,
+        of_pause=noted.of_pause,
     )
     return KeptAbort(order, at, is_left=True)
 

@@ -10,7 +10,7 @@ from functools import partial
 
 from sqlalchemy import Connection
 
-from ...core.errors import DataRefusedError, RefusedError, StoreError
+from ...core.errors import RefusedError
 from ...core.messages import queues as messages
 from ...core.messages.commands import AbortTask, CommandState
 from ...core.messages.records import (
@@ -48,8 +48,6 @@ class PauseService:
 
     def __init__(self, context: QueueContext, orders: CommandRequests) -> None:
         self._orders = orders
-        self._left: dict[str, list[CommandOrder]] = {}
-        """The Aborts of pauses that could not be stored, by robot."""
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
@@ -68,21 +66,13 @@ class PauseService:
         # What is refused must not stop the robot while it waits for its turn.
         self._doing_and_kept(request.robot)
         self._commands.note_stop([request.robot])
-        left = self._left.get(request.robot, [])
         # An Abort of whatever the robot does by then, which holds its queue too, also where it does nothing.
-        abort = CommandOrder(str(uuid.uuid4()), request.robot, Abort(), operator, _because_paused(request))
+        why = request.abort_reason
+        abort = CommandOrder(str(uuid.uuid4()), request.robot, Abort(), operator, why, of_pause=True)
         # What the last pause has left would end the task that this one keeps, unless this one fails, too.
-        with self._commands.aborts_aside(left):
+        with self._commands.replacing_failed_pauses(request.robot):
             pausing = start_task(self._pause_held(request, operator))
-            try:
-                report = await self._orders.send_if_unstored([abort], pausing, is_pause=True)
-            except StoreError as error:
-                if not isinstance(error.__cause__, DataRefusedError):
-                    self._left[request.robot] = [abort]
-                raise
-            self._commands.release_aborts(left)
-        self._left.pop(request.robot, None)
-        return report
+            return await self._orders.send_if_unstored([abort], pausing, is_pause=True)
 
     async def _pause_held(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         async with self._registry.holding([request.robot]):
@@ -107,7 +97,7 @@ class PauseService:
             robot,
             Abort(),
             operator,
-            _because_paused(request),
+            request.abort_reason,
             aborts=None if doing is None else doing.report.command,
             task=(own or kept[0]).id,
         )
@@ -132,10 +122,6 @@ class PauseService:
             rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
             kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock.time()))
         return kept
-
-
-def _because_paused(request: messages.PauseRobot) -> str:
-    return because("paused", request.reason)
 
 
 def _task_by(queue: Queue, command: str) -> QueuedTask | None:
@@ -276,6 +262,8 @@ class QueueEditor:
     @handles(messages.ResumeQueue)
     async def resume(self, request: messages.ResumeQueue, operator: str) -> messages.QueueReport:
         """Resume a queue; if its robot has not acknowledged an Abort yet, as soon as it has."""
+        # One that is kept would hold the queue after that.
+        await self._commands.store_kept(request.robot)
         async with self._editing(request.robot, request.revision) as queue:
             after, current = task_queue.resume_queue(queue, operator, self._clock.time()), queue.current
             if current is not None and self._is_being_aborted(queue.robot, current):

@@ -119,7 +119,7 @@ def abc(fleet):
 
 def test_the_gateway_that_gets_the_robot_has_it_as_it_was_asked_for(fleet, abc):
     a, b, c = abc
-    order = a.abort("r1", expires_in=60.0, aborts="target-01")
+    order = a.abort("r1", expires_in=60.0, aborts="target-01", of_pause=True)
     assert b.ids == c.ids == []
     b.get("r1")
     assert b.kept.of(["r1"]) == [KeptAbort(order, fleet.now - OFFSET, is_left=True)]
@@ -145,6 +145,23 @@ def test_a_gateway_that_has_the_robot_when_it_hears_of_it_has_it_at_once(abc):
     b.has.add("r1")
     a.abort("r1")
     assert b.ids == ["abort-0001"]
+
+
+def test_a_pause_that_succeeds_at_whichever_gateway_ends_what_failed_ones_have_left(abc):
+    a, b, c = abc
+    b.has.add("r1")
+    a.abort("r1", of_pause=True)
+    a.abort("r2", "abort-0002", of_pause=True)
+    a.abort("r1", "abort-0003", aborts="target-01")
+    c.aborts.withdraw_pauses(["r1"])
+    assert [gateway.noted for gateway in abc] == [["abort-0002", "abort-0003"]] * 3
+    assert b.ids == ["abort-0003"]
+    # Or at the one that has the robot.
+    a.abort("r1", "abort-0004", of_pause=True)
+    with b.kept.replacing_failed_pauses("r1"):
+        assert b.ids == ["abort-0003"]
+    b.kept.write_notes()
+    assert [gateway.noted for gateway in abc] == [["abort-0002", "abort-0003"]] * 3
 
 
 def test_who_noted_it_by_a_clock_that_is_ahead_forgets_it_too(fleet, abc, monkeypatch):

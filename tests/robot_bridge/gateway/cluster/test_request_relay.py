@@ -95,8 +95,13 @@ class Notes:
     def note_aborts(self, aborts):
         self.noted += aborts
 
-    def withdraw(self, ids):
-        self.withdrawn += ids
+    def withdraw_pauses(self, robots):
+        of = set(robots)
+        self.withdrawn += [
+            one.command
+            for one in self.noted
+            if one.robot in of and one.of_pause and one.command not in self.withdrawn
+        ]
 
 
 class Away:
@@ -148,7 +153,7 @@ async def test_an_abort_of_a_robot_elsewhere_that_cannot_be_stored_is_noted_for_
         "send": (noted.command, "smoke", None, 60.0),
         "pause": (noted.command, "paused: smoke", None, None),
     }[asked]
-    assert noted == NotedAbort(how[0], "r1", "Ada", 5000.0, *how[1:])
+    assert noted == NotedAbort(how[0], "r1", "Ada", 5000.0, *how[1:], of_pause=asked == "pause")
     assert asked == "pause" or noted.command == "abort-0001"
     # A pause that is asked for again keeps the task, which that Abort would end.
     await relay.answer(request, "Ada")
@@ -231,7 +236,7 @@ async def test_a_robot_that_comes_here_is_loaded_before_anything_but_an_abort_is
     assert answer == {
         "error": {
             "kind": "StoreError",
-            "text": "robot 'r1' is between gateway c and this one; ask again in a moment",
+            "text": "robot 'r1' goes from one gateway to another; ask again in a moment",
         }
     }
 

@@ -10,7 +10,7 @@ from unittest.mock import AsyncMock
 
 import pytest
 
-from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from robot_bridge.core.errors import DataRefusedError, OutdatedError, RefusedError, StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.queues import (
     GetQueue,
@@ -21,8 +21,9 @@ from robot_bridge.core.messages.queues import (
     SetQueue,
 )
 from robot_bridge.core.messages.roads import ResolveConflict
-from robot_bridge.core.messages.robots import GetPath
+from robot_bridge.core.messages.robots import Abort, GetPath
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
+from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort
 from robot_bridge.gateway.commands.persistence import insert_commands
 from robot_bridge.gateway.queues.task_life import STOPS_FIRST
 from tests.support.bridge.queue_line import LANE, PLACES, placed, task
@@ -411,6 +412,48 @@ async def test_what_the_first_one_has_left_is_not_stored_while_the_second_one_wa
     await line.yard.fleet.save()
     assert [one.x for one in report.tasks] == [60.0]
     assert (await line.sent()).count("Abort") == 1
+
+
+def left_elsewhere(line, **how):
+    """Have the Abort of r1 kept that another gateway could not store."""
+    order = CommandOrder("abort-0001", "r1", Abort(), "Ada", "paused", **how)
+    line.yard.fleet._commands.keep_left([KeptAbort(order, line.yard.clock.time(), is_left=True)])
+
+
+@pytest.mark.parametrize(("of_pause", "aborts"), [(True, 1), (False, 2)])
+async def test_what_a_pause_at_another_gateway_has_left_is_not_stored_behind_one_that_succeeds(
+    line, of_pause, aborts
+):
+    await line.yard.send("x", x=60.0, y=40.0)
+    await line.yard.acknowledge_all()
+    left_elsewhere(line, of_pause=of_pause)
+    report = await pause(line)
+    await line.yard.fleet.save()
+    assert [one.x for one in report.tasks] == [60.0]
+    assert (await line.sent()).count("Abort") == aborts
+
+
+async def test_what_a_pause_has_left_does_not_hold_a_queue_that_is_resumed_after_it(line):
+    await line.set(task("a"))
+    await line.yard.acknowledge_all()
+    await line.queues.pause(PauseQueue("r1"), "Ada")
+    left_elsewhere(line, of_pause=True)
+    await line.resume()
+    await line.yard.fleet.save()
+    await line.advance()
+    report = await line.report()
+    assert (report.state.value, report.tasks[0].reason) == ("running", STOPS_FIRST)
+    assert await line.reach(35.0, 40.0) == ["Abort"]
+    assert await line.sent() == [PLACES["a"], "Abort", PLACES["a"]]
+
+
+async def test_a_queue_that_what_a_pause_has_left_holds_is_not_resumed_unseen(line):
+    await line.set(task("a"))
+    await line.yard.acknowledge_all()
+    left_elsewhere(line, of_pause=True)
+    with pytest.raises(OutdatedError):
+        await line.resume()
+    assert (await line.report()).reason == "aborted by Ada: paused"
 
 
 async def test_a_pause_that_is_lost_of_a_robot_that_does_nothing_becomes_an_abort_too(line, lose):
