@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages.base import DESK_REQUESTS, to_json
+from ...robot_bridge.core.messages.base import DESK_REQUESTS
 from ...robot_bridge.core.messages.commands import AbortAll, CommandReport, Commands, Send
 from ...robot_bridge.core.messages.roads import (
     CloseRoad,
@@ -216,8 +216,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         command = str(uuid.uuid4())
-        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock.steady())
-        return self._submit(order, tr("ABORT ALL"))
+        return self._submit(self._order(AbortAll(command), command), tr("ABORT ALL"))
 
     @property
     def awaits_stop(self) -> bool:
@@ -230,12 +229,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         stop = str(uuid.uuid4())
-        key = self._submit(
-            OperatorRequest(
-                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock.steady(), lasting=True
-            ),
-            tr("EMERGENCY STOP"),
-        )
+        key = self._submit(self._order(EmergencyStop(stop), stop, lasting=True), tr("EMERGENCY STOP"))
         self._pending[key].stops = True
         return key
 
@@ -244,9 +238,8 @@ class RequestTracker(QObject):
 
         :raises NotSentError: when it cannot be sent.
         """
-        params = to_json(ClearEmergencyStop(reason or None, stop))
-        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock.steady())
-        return self._submit(order, tr("Clear emergency stop"))
+        request = ClearEmergencyStop(reason or None, stop)
+        return self._submit(self._order(request), tr("Clear emergency stop"))
 
     def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
         """Send ``request`` to the gateway, described to the operator by ``words``, and return its key.
@@ -265,7 +258,7 @@ class RequestTracker(QObject):
 
         :raises NotSentError: when it cannot be sent.
         """
-        order = self._order(request, lasting)
+        order = self._order(request, lasting=lasting)
         self._sender.submit(order)
         return order.key
 
@@ -279,10 +272,8 @@ class RequestTracker(QObject):
         """Send a request that already has its key, and return that; otherwise as :meth:`ask`."""
         return self._submit(order, words, draft, topics)
 
-    def _order(self, request: Any, lasting: bool = False) -> OperatorRequest:
-        return OperatorRequest(
-            str(uuid.uuid4()), request.method, to_json(request), self._clock.steady(), lasting
-        )
+    def _order(self, request: Any, key: str | None = None, *, lasting: bool = False) -> OperatorRequest:
+        return OperatorRequest.of(key or str(uuid.uuid4()), request, self._clock.steady(), lasting=lasting)
 
     def accept_answer(self, answer: RequestResult) -> bool:
         """Handle the outcome of a request, and signal it with :attr:`answered`."""
@@ -333,8 +324,7 @@ class RequestTracker(QObject):
     ) -> str:
         command = str(uuid.uuid4())
         send = Send(command, robot, op, params, override=override)
-        order = OperatorRequest(command, Send.method, to_json(send), self._clock.steady())
-        return self._submit(order, words, draft)
+        return self._submit(self._order(send, command), words, draft)
 
     def _submit(
         self,
@@ -442,4 +432,4 @@ class RoadStatus(QObject):
         )
 
     def _order(self, key: str, request: CloseRoad | OpenRoad | ResolveConflict) -> OperatorRequest:
-        return OperatorRequest(key, request.method, to_json(request), self._state.clock.steady())
+        return OperatorRequest.of(key, request, self._state.clock.steady())

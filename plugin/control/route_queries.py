@@ -9,7 +9,6 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages.base import to_json
 from ...robot_bridge.core.messages.roads import GetRoute, RouteReport, route_report
 from ..gateway_client.fleet_state import OperatorRequest, RequestResult
 from ..ui.errors import NotSentError
@@ -180,7 +179,7 @@ class RouteQuery(QObject):
             **_restrictions(question.preferences),
         )
         key = f"route-{id(self)}-{next(self._numbers)}"
-        self._sender.submit(OperatorRequest(key, request.method, to_json(request), self._clock.steady()))
+        self._sender.submit(OperatorRequest.of(key, request, self._clock.steady()))
         self._pending = key, question, self._clock.steady()
 
 

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.core.messages.base import to_json
 from ...robot_bridge.core.messages.positions import RobotReport
 from ...robot_bridge.core.messages.roads import GetRoute
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
@@ -386,7 +385,7 @@ class TargetRoutes(QObject):
         request = GetRoute(*goal, start=place)
         key = f"{self._prefix}{next(self._numbers)}"
         try:
-            self._sender.submit(OperatorRequest(key, request.method, to_json(request), now))
+            self._sender.submit(OperatorRequest.of(key, request, now))
         except NotSentError:
             return None
         return _TargetQuery(key, draft.robot, goal, now)

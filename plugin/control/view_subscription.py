@@ -13,7 +13,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import positions
-from ...robot_bridge.core.messages.base import is_robot_name, to_json
+from ...robot_bridge.core.messages.base import is_robot_name
 from ...robot_bridge.core.messages.positions import (
     AlarmLimits,
     FindRobots,
@@ -118,9 +118,7 @@ class RobotSearch(QObject):
             return
         now = self._state.clock.steady()
         try:
-            self._sender.submit(
-                OperatorRequest(self._asked_for[1], request.method, to_json(request), requested_at=now)
-            )
+            self._sender.submit(OperatorRequest.of(self._asked_for[1], request, now))
         except FleetError:
             # The link has just gone.
             self._asked_for = ("", "")
@@ -271,10 +269,9 @@ class ViewSubscription(QObject):
     def _subscribe(self, view: View | None) -> None:
         self._asked = view
         # Rate and form are the connection's own.
-        params = to_json(Subscribe(form=PositionForm.COLUMNS, view=view))
-        request = OperatorRequest("view", Subscribe.method, params, requested_at=self._clock.steady())
+        request = Subscribe(form=PositionForm.COLUMNS, view=view)
         try:
-            self._sender.submit(request)
+            self._sender.submit(OperatorRequest.of("view", request, self._clock.steady()))
         except FleetError:
             # The link has just gone: it is requested again on the next one.
             self._asked = None

@@ -11,6 +11,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages.administration import SiteReport, Suspensions
+from ...robot_bridge.core.messages.base import DeskRequest, to_json
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.links import Links
 from ...robot_bridge.core.messages.positions import RobotReport
@@ -64,6 +65,13 @@ class OperatorRequest:
     requested_at: float = 0.0
     lasting: bool = False
     ground: RequestGround | None = None
+
+    @classmethod
+    def of(
+        cls, key: str, request: DeskRequest[Any], requested_at: float = 0.0, *, lasting: bool = False
+    ) -> OperatorRequest:
+        """Return ``request`` under ``key``."""
+        return cls(key, request.method, to_json(request), requested_at, lasting)
 
 
 @dataclass(frozen=True)

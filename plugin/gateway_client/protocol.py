@@ -118,7 +118,7 @@ class GatewayProtocol:
         self.ready = False
         # A name that the gateway would refuse must not lock out the operator.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
-        return [self._request(OperatorRequest("hello", Hello.method, to_json(Hello(name))))]
+        return [self._request(OperatorRequest.of("hello", Hello(name)))]
 
     def submit(self, order: OperatorRequest) -> list[str]:
         """Return the texts to send now for a new request: none while the link is not ready.
@@ -309,10 +309,10 @@ class GatewayProtocol:
             self._buffer.add_answer(RequestResult(order, error=_made_void()))
         orders = [order for order in orders if order.key in self._outbox]
         first = [
-            OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
-            OperatorRequest("get_closures", GetClosures.method),
-            OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
-            OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
+            OperatorRequest.of("get_commands", GetCommands()),
+            OperatorRequest.of("get_closures", GetClosures()),
+            OperatorRequest.of(ALL_QUEUES, GetQueue()),
+            OperatorRequest.of(ALL_PLANS, GetPlans()),
         ]
         stops = [self._request(order) for order in orders if stops_robots(order)]
         others = (*first, *(order for order in orders if not stops_robots(order)))
