@@ -47,6 +47,8 @@ class RobotSessions:
     def __init__(self, claims: ConnectionClaims) -> None:
         self._claims = claims
         self._holders: dict[str, RobotSession] = {}
+        self._applicants: dict[str, RobotSession] = {}
+        """sessions with a Ready that could not be stored yet."""
 
     def __iter__(self) -> Iterator[RobotSession]:
         return iter(list(self._holders.values()))
@@ -55,8 +57,22 @@ class RobotSessions:
         """Return the session of a robot, None if it is not connected."""
         return self._holders.get(robot)
 
+    def applicant(self, robot: str) -> RobotSession | None:
+        """Return the session on which a robot has said Ready, and waits for the database."""
+        return self._applicants.get(robot)
+
+    def await_admission(self, session: RobotSession) -> None:
+        """Record that ``session`` has said Ready, until it is admitted, refused or released."""
+        self._applicants[session.robot] = session
+
+    def refuse(self, session: RobotSession) -> None:
+        """Record that ``session`` waits no more."""
+        if self._applicants.get(session.robot) is session:
+            del self._applicants[session.robot]
+
     def admit(self, session: RobotSession) -> None:
         """Make ``session`` the connection of its robot, and end the previous one."""
+        self.refuse(session)
         former = self._holders.get(session.robot)
         self._holders[session.robot] = session
         self._claims.claim(session.robot, session)
@@ -65,6 +81,7 @@ class RobotSessions:
 
     def release(self, session: RobotSession) -> bool:
         """Remove ``session``; return whether its robot was connected by it."""
+        self.refuse(session)
         held = self._holders.get(session.robot) is session
         if held:
             self._claims.free(session.robot, session)
@@ -245,8 +262,11 @@ class RobotSession:
             return await self._fleet.receive(self.robot, self._channel.name, request, id)
         # A robot that restarts on its own connection is not a second one.
         self._fleet.reception.holds.free(self.robot, self)
+        self._sessions.await_admission(self)
         outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
-        if outcome.admitted:
+        if not outcome.admitted:
+            self._sessions.refuse(self)
+        else:
             self._fleet.check_owned(self.robot)
             self._admitted = True
             self._sessions.admit(self)

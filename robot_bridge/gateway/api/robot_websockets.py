@@ -25,8 +25,9 @@ from ...core.messages.base import (
     refuse_unknown_keys,
     to_json,
 )
+from ...core.messages.commands import CommandState
 from ...core.messages.links import AbortOfAll, GetAreas, LinkHello, LinkPositions, LinkStatus, LinkWelcome
-from ...core.messages.robots import Ready, SendImage
+from ...core.messages.robots import Abort, Ready, SendImage
 from ...core.position_frame import entries_in, poses_in_frame
 from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
@@ -36,7 +37,7 @@ from ..auth.authorisation import ANY_LINK, PATHS, AuthGate
 from ..auth.client_connection import ClientConnection
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
-from ..model.events import GatewaysChanged, RobotLeft
+from ..model.events import CommandChanged, GatewaysChanged, RobotLeft
 from ..model.robots import RobotPose
 from ..monitoring import BackgroundTasks
 from .delivery import LARGE, send_stop, while_connected
@@ -409,6 +410,7 @@ class WebSocketInterface:
         self._holders = RobotSessions(fleet.reception.holds)
         fleet.emergency.reach(self._stop_all)
         fleet.orders.reach(self.abort)
+        fleet.events.subscribe(CommandChanged, self._abort_applicant)
         fleet.events.subscribe(RobotLeft, self._release)
         fleet.events.subscribe(GatewaysChanged, self._announce_gateways)
         self._tasks = BackgroundTasks()
@@ -469,10 +471,19 @@ class WebSocketInterface:
 
     def abort(self, robot: str, call_id: str) -> bool:
         """Send an Abort that cannot be stored; return whether the robot is connected."""
-        session = self._holders.get(robot)
-        if session is not None:
+        # By the second a restarted robot may be there.
+        sessions = {s for s in (self._holders.get(robot), self._holders.applicant(robot)) if s is not None}
+        for session in sessions:
             session.stop_now(call_id, emergency=False)
-        return session is not None
+        return bool(sessions)
+
+    def _abort_applicant(self, event: CommandChanged) -> None:
+        """Send a stored Abort to a robot whose Ready is not stored yet: it is delivered nothing before."""
+        report = event.report
+        if report.op == Abort.__name__ and report.state is CommandState.QUEUED:
+            applicant = self._holders.applicant(report.robot)
+            if applicant is not None and not report.params.get("emergency"):
+                applicant.stop_now(f"abort-{report.command}", emergency=False)
 
     def _release(self, event: RobotLeft) -> None:
         """Close the connection of a robot that another gateway owns; a robot still here sends Ready again."""

@@ -226,3 +226,28 @@ def test_a_robot_on_its_way_that_connects_again_hears_an_abort_while_robots_are_
         wait_until(lambda: client.sql("select name from robots where name = 'r3'"), 20)
         for name in ("r1", "r3", "s1"):
             wait_until(lambda name=name: client.sql(f"select 1 from trajectories where robot = '{name}'"), 20)
+
+
+def test_a_robot_that_restarts_hears_an_abort_while_robots_are_locked(served):
+    """It is let in as soon as its new run can be stored."""
+    desk = served.desk()
+    with served.robot("r1") as before:
+        before.plug_in(1)
+        desk.send("target-it-1", "r1", "SetPosEnd", x=50.0, y=40.0)
+        before.say(before.wait_for("SetPosEnd")["id"])
+        desk.wait_for_step("target-it-1", "acknowledged")
+    with tables_locked(served, "robots"):
+        robot = served.robot("r1")
+        with pytest.raises(RefusedError, match="locked"):
+            robot.ask("Ready", {"magic": 2}, seconds=30.0)
+        desk.ask("abort", {"command": "abort-it-1", "robot": "r1"}, 30.0)
+        assert robot.wait_for("Abort")["id"] == "abort-abort-it-1"
+        robot.calls.clear()
+        with tables_locked(served, "commands"):
+            with pytest.raises(RefusedError, match="The Abort is not stored; it was sent to r1"):
+                desk.ask("abort", {"command": "abort-it-2", "robot": "r1"}, 30.0)
+            assert robot.wait_for("Abort")["id"] == "abort-abort-it-2"
+    robot.calls.clear()
+    robot.plug_in(2)
+    desk.wait_for_step("target-it-1", "aborted")
+    assert [call for call in robot.calls if call["method"] in MOTIONS] == []

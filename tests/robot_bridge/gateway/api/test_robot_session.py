@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import re
 from types import SimpleNamespace
@@ -11,7 +12,7 @@ import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.logs import IN_FULL, RepeatedLines
-from robot_bridge.core.messages.robots import OpAck
+from robot_bridge.core.messages.robots import OpAck, Ready
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.api import robot_websockets
 from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
@@ -340,3 +341,24 @@ async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from
     place.add(work())
     await asyncio.wait_for(done.wait(), 20)
     assert "link agvs: what robot 'r1' said failed" in caplog.text
+
+
+@pytest.mark.parametrize(("end", "waits"), [("stored", False), ("refused", False), ("away", True)])
+async def test_a_robot_whose_ready_could_not_be_stored_is_sent_aborts_until_it_is_let_in_or_refused(
+    own, end, waits
+):
+    sessions = own.session._sessions
+
+    async def receive(_robot, _link, _ready, _id):
+        assert sessions.applicant("r1") is own.session
+        if end == "away":
+            raise StoreError("away")
+        return RequestOutcome("r1", OpAck(ok=end == "stored", magic=1))
+
+    own._fleet.receive, own._fleet.check_owned = receive, lambda _robot: None
+    own._fleet.reception = SimpleNamespace(holds=sessions._claims)
+    with contextlib.suppress(StoreError):
+        await own.session._ask(Ready(1), None)
+    assert (sessions.applicant("r1") is own.session) == waits
+    sessions.release(own.session)
+    assert sessions.applicant("r1") is sessions.get("r1") is None
