@@ -254,6 +254,15 @@ class GatewayProtocol:
         return self._order_answered(order, message)
 
     def _welcomed(self, message: dict[str, Any]) -> list[str]:
+        """Take in the answer to hello; return the first frames."""
+        self._check_welcome(message)
+        self._learn_welcome(message["result"])
+        self.ready = True
+        self._hand_back_foreign()
+        return self._first_frames()
+
+    def _check_welcome(self, message: dict[str, Any]) -> None:
+        """Raise GatewayLinkError unless the gateway admits this desk and speaks its protocol."""
         if "error" in message:
             if _code(message) == UNKNOWN_METHOD:
                 raise GatewayLinkError(
@@ -274,18 +283,20 @@ class GatewayProtocol:
                 ),
                 final=_code(message) == WRONG_PARAMETERS,
             )
-        result = message["result"]
-        if result.get("protocol") != PROTOCOL_VERSION:
+        theirs = message["result"].get("protocol")
+        if theirs != PROTOCOL_VERSION:
             raise GatewayLinkError(
                 tr(
                     "The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. "
                     "Update whichever of the two is older, then press Connect.",
                     url=self._url,
-                    theirs=result.get("protocol"),
+                    theirs=theirs,
                     ours=PROTOCOL_VERSION,
                 ),
                 final=True,
             )
+
+    def _learn_welcome(self, result: dict[str, Any]) -> None:
         database = str(result.get("database") or "")
         self._check_fleet(database)
         self._learn(result.get("gateways"))
@@ -299,8 +310,9 @@ class GatewayProtocol:
             self._learn_stop(safety.emergency_report(result["emergency"]))
         self._choose_view(result)
         self._set_clock(result)
-        self.ready = True
-        self._hand_back_foreign()
+
+    def _first_frames(self) -> list[str]:
+        """Return what is sent first: stops, the subscription and queries, and what waited for a link."""
         # First those too old, as their stops may be: of them nobody knows whether they were done.
         orders, too_old = self._outbox.renew(now := self._clock.steady())
         for order in too_old:
