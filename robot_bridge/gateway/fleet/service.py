@@ -122,20 +122,41 @@ class Fleet:
         )
         self._queue_registry = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()
+        self._build_queues(planner, rules, waiting)
+        self._build_watches(note)
+        self._build_reception(planner)
+        self._tracks = GroundTracks()
+        self._places = PlaceChecks(site)
+        self._steps = Steps("save")
+        self.suspensions = AccountSuspensions(database, self._commands, self.listeners, clock)
+        self.counters = Counters()
+        self.repeated = RepeatedLines()
+        self._subscribe()
+
+    def _build_queues(self, planner: Planner, rules: CommandRules, waiting: WaitingRobots) -> None:
+        """Build the parts that send robots on: queues, roads, pauses."""
         self.queue_context = QueueContext(
-            site, self.robots, self._commands, self._queue_registry, database, clock, waiting, planner, fence
+            self.site,
+            self.robots,
+            self._commands,
+            self._queue_registry,
+            self._database,
+            self._clock,
+            waiting,
+            planner,
+            self._fence,
         )
         self.queues = QueueEditor(self.queue_context)
         self.driving = QueueRunner(self.queue_context)
         self.roads = RoadTraffic(
-            site,
+            self.site,
             self.robots,
             self._commands,
             self.orders,
             self.driving,
             waiting,
-            database,
-            clock,
+            self._database,
+            self._clock,
             planner if isinstance(planner, RoadPlanner) else None,
             self.listeners,
             self.events,
@@ -143,25 +164,32 @@ class Fleet:
         rules.add(self.emergency)
         rules.add(self.roads.closures)
         self.pauses = PauseService(self.queue_context, self.orders)
+
+    def _build_watches(self, note: AuditNote | None) -> None:
+        """Build the parts that look where robots are."""
         self.geofence = GeofenceWatch(
-            site,
+            self.site,
             self.robots,
             self.orders,
             self.pauses,
             self.emergency,
-            clock,
+            self._clock,
             self.listeners,
             self.events,
             note,
         )
         self.nearness = NearnessWatch(
-            self.robots, self.links, self.roads.traffic, site, clock, self.listeners
+            self.robots, self.links, self.roads.traffic, self.site, self._clock, self.listeners
         )
+
+    def _build_reception(self, planner: Planner) -> None:
+        """Build the parts that robots come to and go from, with what is recorded of them and sent to them."""
+        site, database, clock = self.site, self._database, self._clock
         self.recorder = TrajectoryRecorder(site)
-        self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock, fence)
+        self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock, self._fence)
         self.outboxes = RobotOutboxes(database, self.robots, self._commands, self.emergency, self._saving)
         self.maps = MapSender(site, self.robots, self.outboxes, database)
-        self.takeover = None if cluster is None else self._follow_owners(cluster)
+        self.takeover = None if self.cluster is None else self._follow_owners(self.cluster)
         self.reception = Registration(
             site,
             self.robots,
@@ -173,7 +201,7 @@ class Fleet:
             database,
             clock,
             self.takeover,
-            None if cluster is None else cluster.exchange,
+            None if self.cluster is None else self.cluster.exchange,
         )
         self.removals = Decommissioning(
             self.robots,
@@ -186,13 +214,6 @@ class Fleet:
         )
         self.observations = ObservationService(site, database, clock, self.events)
         self._answering = RobotAnswers(site, database, self.robots, self._commands, planner, self.roads.ways)
-        self._tracks = GroundTracks()
-        self._places = PlaceChecks(site)
-        self._steps = Steps("save")
-        self.suspensions = AccountSuspensions(database, self._commands, self.listeners, clock)
-        self.counters = Counters()
-        self.repeated = RepeatedLines()
-        self._subscribe()
 
     def _follow_owners(self, cluster: Cluster) -> Takeover:
         """Create the takeover of robots that this gateway gets or loses."""
