@@ -55,7 +55,7 @@ from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
-from .site_updates import FETCH_INTERVAL, SiteCopy, SiteWatch, stamp_of
+from .site_updates import FETCH_INTERVAL, SiteCopy, SiteWatch, Stamp, stamp_of
 from .storage.database import Database
 from .storage.dialects import sqlite_file_of
 from .storage.repositories import metadata
@@ -351,15 +351,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(database.close, CLOSE_WITHIN)
         await database.open()
         cluster, holding = await _hold_database(settings, database, stack)
-        # After the database: a city takes a while to read, and a wrong address is reported at once.
-        site = await asyncio.to_thread(read_site, settings.site)
         # Before anything is stored by this clock.
         doubt = check_clock_at_start(time.time(), await database.run(newest_time))
-        folder = await _site_folder(settings, database)
-        if folder != settings.site:
-            stamp = await asyncio.to_thread(stamp_of, folder)
-            site = await asyncio.to_thread(_chosen, folder, site)
-        await _check_frame(site, settings, database, cluster)
+        folder, stamp, site = await _read_served_site(settings, database, cluster, stamp)
         stops, aborts = await asyncio.to_thread(_journals, settings, await database.run(metadata.database_id))
         gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
@@ -414,6 +408,23 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             stack.push_async_callback(copy.close)
             works["site copy"] = lambda: every(FETCH_INTERVAL, copy.refresh, "site copy", fleet.counters)
         await _until_stopped(keep_all_going(works, fleet.counters), signals.stop)
+
+
+async def _read_served_site(
+    settings: GatewaySettings, database: Database, cluster: Cluster | None, stamp: Stamp
+) -> tuple[Path, Stamp, Site]:
+    """Return the site to serve with its folder and the stamp of that; ``stamp`` is that of the given one.
+
+    To be called once the database is held: a city takes a while to read, and a wrong address is reported at
+    once. Raises BridgeError, SiteError and StoreError.
+    """
+    site = await asyncio.to_thread(read_site, settings.site)
+    folder = await _site_folder(settings, database)
+    if folder != settings.site:
+        stamp = await asyncio.to_thread(stamp_of, folder)
+        site = await asyncio.to_thread(_chosen, folder, site)
+    await _check_frame(site, settings, database, cluster)
+    return folder, stamp, site
 
 
 async def _hold_database(
