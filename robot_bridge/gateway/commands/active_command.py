@@ -6,11 +6,13 @@ import contextlib
 import dataclasses
 import logging
 import time
+import uuid
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+from ...core.errors import UsedIdError
 from ...core.geometry import Polyline
 from ...core.messages.base import to_json
 from ...core.messages.commands import ABORT_VALID_S, CommandReport, CommandState, CommandStep
@@ -238,6 +240,14 @@ def create_command(order: CommandOrder, now: float) -> ActiveCommand:
     )
     expires_at = None if order.expires_in is None else now + order.expires_in
     return ActiveCommand(report, 0, order.message, expires_at=expires_at, written_at=now)
+
+
+def aborts_renamed(orders: Sequence[CommandOrder], error: UsedIdError) -> list[CommandOrder]:
+    """Return Aborts under new ids, since one of theirs is another command's; raises ``error`` for others."""
+    if not all(isinstance(order.message, Abort) for order in orders):
+        raise error
+    log.warning("%s: the Abort is given another id", error)
+    return [dataclasses.replace(order, command=str(uuid.uuid4())) for order in orders]
 
 
 def superseded(order: CommandOrder, mine: list[ActiveCommand], now: float) -> list[ActiveCommand]:

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import dataclasses
 import logging
-import uuid
 from collections.abc import (
     AsyncIterator,
     Awaitable,
@@ -26,7 +25,7 @@ from ...core.clock import Clock, steady_time
 from ...core.errors import DataRefusedError, RefusedError, StoreError, UsedIdError
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.robots import MOTION_OPS, Abort, Answer, OpAck, SendPos, SetPath
+from ...core.messages.robots import MOTION_OPS, Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
@@ -42,7 +41,6 @@ from .validation import ActiveCommands, CommandReader, CommandRules, CommandVali
 log = logging.getLogger(__name__)
 
 __all__ = ["GATEWAY", "ActiveCommand", "CommandOrder", "CommandService"]
-
 DRIVEN_STEP = 0.5
 """metres along a path between two stored values of progress."""
 NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
@@ -135,11 +133,6 @@ class CommandService(CommandReader):
         """Wait until the orders of a robot that are being stored are stored; raises StoreError."""
         async with self._held.of([robot]):
             return
-
-    def drives_after(self, abort: CommandReport) -> bool:
-        """Return whether the robot of an Abort has an open motion that was asked for after it."""
-        began = abort.steps[0].at
-        return any(c.is_motion and c.report.steps[0].at > began for c in self._open.of(abort.robot))
 
     def keep_aborts(self, aborts: Iterable[CommandOrder]) -> Future[bool] | None:
         """Store Aborts before any other message of their robots; return the writing of their notes."""
@@ -428,18 +421,14 @@ class CommandService(CommandReader):
         try:
             issued, changed = await self._held.run(robots, persistence.insert_commands, drafts, also)
         except UsedIdError as error:
-            if not all(isinstance(order.message, Abort) for order in orders):
-                raise
-            log.warning("%s: the Abort is given another id", error)
-            renamed = [dataclasses.replace(order, command=str(uuid.uuid4())) for order in orders]
-            return await self._store(renamed, found, also)
+            return await self._store(active_command.aborts_renamed(orders, error), found, also)
         for command in changed:
             self._apply(command)
         for command in issued:
-            id = command.report.command
-            if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
+            report = command.report
+            if report.state is CommandState.QUEUED and self._open.get(report.command) is None:
                 self._apply(command)
-                self._events.publish(OutboxChanged(command.report.robot))
+                self._events.publish(OutboxChanged(report.robot))
         return [command.report for command in issued]
 
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:

@@ -13,7 +13,7 @@ from ...core.clock import steady_time
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
 from ...core.messages.base import DeskRequest
-from ...core.messages.commands import CommandState
+from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.robots import MOTIONS, Abort, Command, SetPath, SetPosEnd
 from ...core.messages.safety import Ability
 from ..model.robots import Robots
@@ -180,6 +180,11 @@ class CommandReader:
         aborted = max((c.sa_id for c in mine if c.is_emergency), default=-1)
         motions = [c.report.steps[0].at for c in mine if c.is_motion and c.sa_id > aborted]
         return any(began <= at or began > doubted_from for began in motions)
+
+    def drives_after(self, abort: CommandReport) -> bool:
+        """Return whether the robot of an Abort has an open motion that was asked for after it."""
+        began = abort.steps[0].at
+        return any(c.is_motion and c.report.steps[0].at > began for c in self._open.of(abort.robot))
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message waiting in SA, by the message's id."""
