@@ -115,7 +115,7 @@ def robot(
 
     async def work(settings: AgentSettings) -> None:
         link = _link(name, url, address, ClientCredentials(token_file, ca))
-        await _run(link, settings, _stop_event(until_stdin_closes))
+        await _run(name, link, settings, _stop_event(until_stdin_closes))
 
     if world is None:
         asyncio.run(work(settings))
@@ -144,12 +144,11 @@ def _link(name: str, url: str | None, database: URL | None, credentials: ClientC
     return RobotSqlLink(database, name)
 
 
-async def _run(link: RobotLink, settings: AgentSettings, stop: asyncio.Event) -> None:
+async def _run(name: str, link: RobotLink, settings: AgentSettings, stop: asyncio.Event) -> None:
     """Run a robot in real time until ``stop`` is set; it sends Stopped before it disconnects."""
     agent = Agent(settings, link)
-    tasks = [
-        asyncio.create_task(work) for work in (link.run(agent), _live(agent), _send_alive(agent), stop.wait())
-    ]
+    works = (link.run(agent), _live(name, agent), _send_alive(agent), stop.wait())
+    tasks = [asyncio.create_task(work) for work in works]
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     agent.stop()
     await asyncio.sleep(2 * STEER_EVERY)
@@ -160,15 +159,18 @@ async def _run(link: RobotLink, settings: AgentSettings, stop: asyncio.Event) ->
         task.result()
 
 
-async def _live(agent: Agent) -> None:
-    """Let the body move in real time, however late the event loop is."""
+async def _live(name: str, agent: Agent) -> None:
+    """Let the body move in real time, however late the event loop is; print when the gateway admits it."""
     loop = asyncio.get_running_loop()
-    last = loop.time()
+    last, was_admitted = loop.time(), False
     while True:
         await asyncio.sleep(STEER_EVERY)
         now = loop.time()
         agent.step(min(now - last, 10 * STEER_EVERY))
         last = now
+        if agent.is_admitted and not was_admitted:
+            typer.echo(f"{name} is connected; Ctrl+C ends it")
+        was_admitted = agent.is_admitted
 
 
 async def _send_alive(agent: Agent) -> None:

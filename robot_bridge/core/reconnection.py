@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import random
+import socket
 import ssl
 import stat
 import sys
@@ -16,6 +18,28 @@ from .errors import AccessError
 from .messages.base import is_loopback, usable_addresses
 
 log = logging.getLogger(__name__)
+
+# --- Why there is no connection ---
+
+_REFUSED = f"[Errno {errno.ECONNREFUSED}]"
+
+
+def connection_failure(error: Exception) -> str:
+    """Return why there is no connection, in the other side's own words if it gave any.
+
+    ``error`` is what the library raised that connects. The text follows the address and a colon.
+    """
+    response = getattr(error, "response", None)
+    if response is not None:
+        text = bytes(response.body or b"").decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {response.status_code}): {text[:300]}"
+    if isinstance(error, ConnectionRefusedError) or _REFUSED in str(error):
+        # Of a host with several addresses asyncio raises each failure as text only.
+        return "nothing listens there; start it, or correct the address"
+    if isinstance(error, socket.gaierror):
+        return "that host is not known to this network; correct the address"
+    return str(error)
+
 
 # --- Which gateway is tried next, and when: the back-off ---
 

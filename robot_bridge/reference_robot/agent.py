@@ -147,6 +147,11 @@ class Agent:
         """The robot's own pose estimate."""
         return self._body.pose
 
+    @property
+    def is_admitted(self) -> bool:
+        """Whether the gateway has accepted its Ready."""
+        return self._admitted
+
     def greet(self) -> None:
         """Send Ready; repeated after each reconnection of the link."""
         self._greet_in = math.inf

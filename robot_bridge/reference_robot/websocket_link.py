@@ -8,7 +8,7 @@ import logging
 from urllib.parse import quote
 
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 from websockets.frames import CloseCode
 
 from ..core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
@@ -16,7 +16,7 @@ from ..core.errors import AccessError, BridgeError
 from ..core.messages.administration import Gateways
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Abort, Observed, OpAck, Ready, Request, Start
-from ..core.reconnection import ClientCredentials, GatewayAddresses
+from ..core.reconnection import ClientCredentials, GatewayAddresses, connection_failure
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from .agent import Agent
@@ -102,7 +102,7 @@ class RobotWebSocketLink:
                     ) from None
                 reason, ends = str(error), code == CloseCode.SERVICE_RESTART
             except (OSError, InvalidHandshake) as error:
-                reason = _reason(error)
+                reason = connection_failure(error)
             wait = self._addresses.next_wait(ends=ends)
             log.warning("%s: %s; trying again in %.1f s at %s", url, reason, wait, self._addresses.current)
             await asyncio.sleep(wait)
@@ -216,11 +216,3 @@ def _reply(id: int | str, ack: OpAck) -> str:
     if ack.ok:
         return jsonrpc.result(id, to_json(ack))
     return jsonrpc.error(id, jsonrpc.REFUSED, ack.reason or "no reason given")
-
-
-def _reason(error: OSError | InvalidHandshake) -> str:
-    """Return why there is no connection, in the gateway's own words if it gave any."""
-    if isinstance(error, InvalidStatus):
-        text = bytes(error.response.body).decode("utf-8", "replace").strip()
-        return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
-    return str(error)

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from urllib.parse import quote
 
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 from websockets.frames import CloseCode
 
 from ...core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
@@ -19,7 +19,7 @@ from ...core.errors import AccessError, BridgeError
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError
 from ...core.messages.robots import Abort
-from ...core.reconnection import ClientCredentials, GatewayAddresses
+from ...core.reconnection import ClientCredentials, GatewayAddresses, connection_failure
 from ...protocol import jsonrpc
 from .errors import LinkError
 from .settings import LinkSettings
@@ -130,7 +130,7 @@ class LinkWebSocket:
                 reason = str(error)
                 ends = error.rcvd is not None and error.rcvd.code == CloseCode.SERVICE_RESTART
             except (OSError, InvalidHandshake) as error:
-                reason = _reason(error)
+                reason = connection_failure(error)
             link.lose()
             wait = self.addresses.next_wait(ends=ends)
             log.warning("%s: %s; trying again in %.1f s at %s", url, reason, wait, self.addresses.current)
@@ -188,11 +188,3 @@ class LinkWebSocket:
             answered(reply)
         elif reply.error is not None:
             log.warning("the gateway refuses: %s", reply.error)
-
-
-def _reason(error: OSError | InvalidHandshake) -> str:
-    """Return why there is no connection, in the gateway's own words if it gave any."""
-    if isinstance(error, InvalidStatus):
-        text = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
-        return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
-    return str(error)

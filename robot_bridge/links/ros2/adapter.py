@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -38,6 +39,9 @@ from .interfaces import (
 )
 from .security import SecuritySettings
 from .services import ActionClient, Refuse, ServiceClient, ServiceServer, by_topic, is_framed
+
+PACKAGES = ("cyclonedds", "rosbags")
+"""Python packages of the extra ``ros2``."""
 
 # --- Table ``[ros2]`` of a link's settings: the DDS network beside the robots ---
 
@@ -481,7 +485,14 @@ class Ros2Adapter(RosAdapter[Offers]):
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter with them; raises LinkError."""
+    """Return the settings in ``file`` and the adapter with them.
+
+    :raises LinkError: for settings that cannot be used.
+    :raises ModuleNotFoundError: for a package that is missing.
+    """
+    for package in PACKAGES:
+        if find_spec(package) is None:
+            raise ModuleNotFoundError(name=package)
     settings, table = read_settings(file, "ros2", Ros2Settings)
     check(settings, table)
     return settings, Ros2Adapter(table, settings.state_folder / f"{settings.name}.servers")

@@ -19,6 +19,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
 from ...core.errors import AccessError
+from ...core.reconnection import connection_failure
 from ..base.errors import LinkError
 from ..ros.errors import FaultError
 from . import decoding
@@ -270,7 +271,7 @@ class RosbridgeConnection:
             except (AccessError, InvalidHandshake, ConnectionClosed) as error:
                 reason = str(error)
             except OSError as error:
-                reason = error.strerror or str(error)
+                reason = connection_failure(error)
             if loop.time() - begun > STABLE_AFTER:
                 wait = FIRST_WAIT
             self.away = f"rosbridge at {self._server.url}: {reason}"

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import aiomqtt
 
+from ...core.reconnection import connection_failure
 from .messages import Vda5050Error
 from .settings import BrokerAddress
 
@@ -90,7 +91,7 @@ class Broker:
             except Vda5050Error as error:
                 reason = str(error)
             except OSError as error:
-                reason = error.strerror or str(error)
+                reason = connection_failure(error)
             finally:
                 self._lose()
             if loop.time() - begun > STABLE_AFTER:
@@ -168,4 +169,4 @@ def _reason(error: aiomqtt.MqttError) -> str:
     code = getattr(error, "rc", None)
     if error.args and isinstance(code, int):
         return str(error.args[0])
-    return str(error)
+    return connection_failure(error)

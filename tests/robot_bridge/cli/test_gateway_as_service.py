@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -20,7 +21,6 @@ from prometheus_client.parser import text_string_to_metric_families
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.operators import ask
 from tests.support.patience import BUSY
 
 
@@ -207,7 +207,8 @@ def test_gateway_and_robot_end_with_whoever_started_them_where_that_is_asked_for
     gateway = start("serve", "--site", site, "--port", 0, "--database", f"sqlite:///{tmp_path}/fleet.db")
     address = gateway.stdout.readline().removeprefix("listening on ").strip()
     robot = start("robot", "--url", f"{address}/robot", "--name", "r1", "--pose=20,8,0")
-    wait_until(lambda: ask(address, ("get_positions", {}))[0]["robots"], 20)
+    assert select.select([robot.stdout], [], [], BUSY * 10)[0], "the robot printed nothing"
+    assert robot.stdout.readline() == "r1 is connected; Ctrl+C ends it\n"
     for process in (robot, gateway):
         assert process.poll() is None
         # As the system does it when that one is killed.

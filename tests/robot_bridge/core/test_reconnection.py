@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+import socket
+
 import pytest
+from websockets.asyncio.client import connect
 
 from robot_bridge.core.messages.administration import Gateways
 from robot_bridge.core.messages.base import LONGEST_ADDRESS, MOST_GATEWAYS
 from robot_bridge.core.messages.robots import OpAck, Start
-from robot_bridge.core.reconnection import DESK_PACE, ROBOT_PACE, SPREAD, GatewayAddresses
+from robot_bridge.core.reconnection import DESK_PACE, ROBOT_PACE, SPREAD, GatewayAddresses, connection_failure
 from robot_bridge.protocol.codec import decode_answer
 
 A, B, C = (f"ws://{name}:8765/robot" for name in ("127.0.0.1", "south.example.org", "[::1]"))
@@ -208,3 +212,28 @@ def test_only_so_many_are_taken():
     for begin in range(0, 1000, 100):
         addresses.learn(many[begin:])
     assert len(addresses.known) <= MOST_GATEWAYS + 2
+
+
+def failure_at(url):
+    async def fail():
+        try:
+            async with connect(url):
+                return None
+        except OSError as error:
+            return connection_failure(error)
+
+    return asyncio.run(fail())
+
+
+def test_a_failure_to_connect_says_what_to_do():
+    with socket.socket() as free:
+        # Bound, and nobody listens: no other program takes the port meanwhile.
+        free.bind(("127.0.0.1", 0))
+        refused = "nothing listens there; start it, or correct the address"
+        assert failure_at(f"ws://127.0.0.1:{free.getsockname()[1]}") == refused
+    of_several = OSError("Multiple exceptions: [Errno 111] Connect call failed ('::1', 1), [Errno 111] ...")
+    assert connection_failure(of_several) == refused
+    assert failure_at("ws://nowhere.invalid") == (
+        "that host is not known to this network; correct the address"
+    )
+    assert connection_failure(OSError("something else")) == "something else"

@@ -8,7 +8,10 @@ import tomllib
 
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
 
+from robot_bridge.links import kinds
+from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.ros.settings import TopicSettings
+from robot_bridge.links.ros2 import adapter as ros2_adapter
 from robot_bridge.links.ros2.adapter import Ros2Settings, load
 
 
@@ -18,6 +21,16 @@ def test_the_settings_of_the_guide_can_be_used(guide, tmp_path, name):
     file.write_text(guide(name), encoding="utf-8")
     settings, adapter = load(file)
     assert (settings.name, adapter.kind) == ("nav2", "ros2")
+
+
+@pytest.mark.parametrize("missing", ["cyclonedds", "rosbags"])
+def test_a_missing_package_is_named_before_the_link_connects(guide, tmp_path, monkeypatch, missing):
+    file = tmp_path / "nav2.toml"
+    file.write_text(guide("shortest"), encoding="utf-8")
+    found = ros2_adapter.find_spec
+    monkeypatch.setattr(ros2_adapter, "find_spec", lambda name: None if name == missing else found(name))
+    with pytest.raises(LinkError, match=rf"needs the Python package {missing}, .*\[ros2\]"):
+        kinds.load("ros2", file)
 
 
 def test_the_guide_names_every_setting_and_its_default(guide):
