@@ -300,6 +300,18 @@ class LayerToSiteTransform:
         except QgsCsException:
             return None
 
+    def bounds_of(self, area: QgsRectangle) -> Bounds | None:
+        """Return the bounds in the site frame of ``area`` in the layer's CRS; None when there are none."""
+        try:
+            moved = area if self.transform is None else self.transform.transformBoundingBox(area)
+        except QgsCsException:
+            return None
+        corners = self.to_site(
+            corners_of((moved.xMinimum(), moved.yMinimum(), moved.xMaximum(), moved.yMaximum()))
+        )
+        (x_min, y_min), (x_max, y_max) = corners.min(axis=0), corners.max(axis=0)
+        return float(x_min), float(y_min), float(x_max), float(y_max)
+
     def to_metres(self, geometry: QgsGeometry) -> QgsGeometry:
         """Return ``geometry`` in metres: the site CRS's, or the site frame's where there is no frame.
 

@@ -348,13 +348,10 @@ def _tree(model: LogModel) -> QTreeView:
     view.setExpandsOnDoubleClick(False)
     view.setIndentation(14)
     shrink_view(view)
-    for column, widest in (
-        (2, longest_word(COMMAND_STATES.values())),
-        (3, tr("{metres:.2f} m off", metres=0.0)),
-    ):
-        view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 12)
-    view.header().setStretchLastSection(False)
+    view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(longest_word(COMMAND_STATES.values())) + 12)
+    # Both share what is left: why a command failed is longer than what it is.
     view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+    view.header().setSectionResizeMode(3, QHeaderView.ResizeMode.Stretch)
     return view
 
 

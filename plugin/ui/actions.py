@@ -170,11 +170,11 @@ class Actions(QObject):
         self.send_map = self._made("fleet_send_map", tr("Send map"), "send_map.svg", tip)
 
     def _make_for_changes(self) -> None:
-        tip = tr("Take the last change of the draft back (Ctrl+Z over the map)")
+        tip = tr("Take the last change of the draft back; Ctrl+Z over the map does so too")
         self.undo = self._made("fleet_undo", tr("Undo"), "undo.svg", tip)
-        tip = tr("Make the change again that was taken back (Ctrl+Shift+Z over the map)")
+        tip = tr("Make the change again that was taken back; Ctrl+Shift+Z over the map does so too")
         self.redo = self._made("fleet_redo", tr("Redo"), "redo.svg", tip)
-        tip = tr("Let the route begin at its end (R over the map)")
+        tip = tr("Let the route begin at its end; R over the map does so too")
         self.reverse = self._made("fleet_reverse_route", tr("Turn route round"), "reverse.svg", tip)
 
     def _make_for_roads(self) -> None:
@@ -223,8 +223,9 @@ class Actions(QObject):
             "emergency_stop.svg",
             tr(
                 "Every robot stops now, and none can be sent anywhere until a supervisor clears it "
-                "({emergency_keys})",
-                emergency_keys=" or ".join(EMERGENCY_KEYS),
+                "({one_key} or {other_key})",
+                one_key=EMERGENCY_KEYS[0],
+                other_key=EMERGENCY_KEYS[1],
             ),
         )
         self.emergency.setShortcuts([QKeySequence(key) for key in EMERGENCY_KEYS])
@@ -236,6 +237,7 @@ class Actions(QObject):
         )
 
     def _made(self, name: str, text: str, icon: str, tip: str, *, checkable: bool = False) -> QAction:
+        # No parentheses in a tip: QGIS takes them for the shortcut, and replaces them by it.
         action = QAction(QIcon(str(ICONS / icon)), text, self)
         action.setObjectName(name)
         action.setCheckable(checkable)

@@ -4521,11 +4521,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
-            <source>{metres:.2f} m off</source>
-            <translation>{metres:.2f} m de desviació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/command_log.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no porta a cap lloc.</translation>
         </message>
@@ -4533,6 +4528,11 @@
             <location filename="../../plugin/panel/command_log_model.py" />
             <source>Details</source>
             <translation>Detalls</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log_model.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m de desviació</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_log_model.py" />
@@ -5998,8 +5998,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: finament), un clic la col·loca, Ctrl+Z la retira, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les dimensions. No s'envia res als robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it, with Shift finely, a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira, amb Maj finament, un clic la col·loca, Ctrl+Z la retira, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les dimensions. No s'envia res als robots</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
@@ -7368,6 +7368,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
             <translation>Com ara "clearance" dels arcs, o 2.2 per als senyals; l'alçada d'una entitat es compta des d'allà. L'alçada superior del pla del robot omet el que comença per sobre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
+            <source>There is no obstacle in the window, and no layer reaches it: the layers lie from ({x_min:.0f}, {y_min:.0f}) to ({x_max:.0f}, {y_max:.0f}) in the site frame. Check the order of the window's numbers, their CRS and the site CRS. To a robot this map says that all is free.</source>
+            <translation>No hi ha cap obstacle a la finestra, i cap capa no hi arriba: les capes són entre ({x_min:.0f}, {y_min:.0f}) i ({x_max:.0f}, {y_max:.0f}) en el marc del recinte. Comproveu l'ordre dels números de la finestra, el seu SRC i el SRC del recinte. A un robot aquest mapa li diu que tot és lliure.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -9820,8 +9825,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
-            <translation>Tots els robots s'aturen ara, i cap no es pot enviar enlloc fins que un supervisor ho aixequi ({emergency_keys})</translation>
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({one_key} or {other_key})</source>
+            <translation>Tots els robots s'aturen ara, i cap no es pot enviar enlloc fins que un supervisor ho aixequi ({one_key} o {other_key})</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9870,8 +9875,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Let the route begin at its end (R over the map)</source>
-            <translation>Fes que la ruta comenci pel final (R sobre el mapa)</translation>
+            <source>Let the route begin at its end; R over the map does so too</source>
+            <translation>Fes que la ruta comenci pel final; R sobre el mapa també ho fa</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9880,8 +9885,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
-            <translation>Torna a fer el canvi desfet (Ctrl+Maj+Z sobre el mapa)</translation>
+            <source>Make the change again that was taken back; Ctrl+Shift+Z over the map does so too</source>
+            <translation>Torna a fer el canvi desfet; Ctrl+Maj+Z sobre el mapa també ho fa</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9960,8 +9965,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
-            <translation>Desfés l'últim canvi de l'esborrany (Ctrl+Z sobre el mapa)</translation>
+            <source>Take the last change of the draft back; Ctrl+Z over the map does so too</source>
+            <translation>Desfés l'últim canvi de l'esborrany; Ctrl+Z sobre el mapa també ho fa</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />

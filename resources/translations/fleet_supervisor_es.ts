@@ -4521,11 +4521,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
-            <source>{metres:.2f} m off</source>
-            <translation>{metres:.2f} m de desvío</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/command_log.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no lleva a ningún lugar.</translation>
         </message>
@@ -4533,6 +4528,11 @@
             <location filename="../../plugin/panel/command_log_model.py" />
             <source>Details</source>
             <translation>Detalles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log_model.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m de desvío</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_log_model.py" />
@@ -5998,8 +5998,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Coloca una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: con precisión), un clic la coloca, Ctrl+Z la retira, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it, with Shift finely, a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Coloca una disposición de conos: se muestra bajo el cursor, la rueda la gira, con Mayús con precisión, un clic la coloca, Ctrl+Z la retira, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
@@ -7368,6 +7368,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
             <translation>Como "clearance" de los arcos, o 2.2 para las señales; la altura de un objeto se cuenta desde ahí. La altura superior del plano del robot omite lo que empieza por encima.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
+            <source>There is no obstacle in the window, and no layer reaches it: the layers lie from ({x_min:.0f}, {y_min:.0f}) to ({x_max:.0f}, {y_max:.0f}) in the site frame. Check the order of the window's numbers, their CRS and the site CRS. To a robot this map says that all is free.</source>
+            <translation>No hay ningún obstáculo en la ventana, y ninguna capa llega hasta ella: las capas están entre ({x_min:.0f}, {y_min:.0f}) y ({x_max:.0f}, {y_max:.0f}) en el marco del recinto. Compruebe el orden de los números de la ventana, su SRC y el SRC del recinto. A un robot este mapa le dice que todo está libre.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -9820,8 +9825,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
-            <translation>Todos los robots se detienen ahora, y ninguno se puede enviar a ningún sitio hasta que un supervisor lo levante ({emergency_keys})</translation>
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({one_key} or {other_key})</source>
+            <translation>Todos los robots se detienen ahora, y ninguno se puede enviar a ningún sitio hasta que un supervisor lo levante ({one_key} o {other_key})</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9870,8 +9875,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Let the route begin at its end (R over the map)</source>
-            <translation>Hacer que la ruta empiece por el final (R sobre el mapa)</translation>
+            <source>Let the route begin at its end; R over the map does so too</source>
+            <translation>Hacer que la ruta empiece por el final; R sobre el mapa también lo hace</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9880,8 +9885,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
-            <translation>Volver a hacer el cambio deshecho (Ctrl+Mayús+Z sobre el mapa)</translation>
+            <source>Make the change again that was taken back; Ctrl+Shift+Z over the map does so too</source>
+            <translation>Volver a hacer el cambio deshecho; Ctrl+Mayús+Z sobre el mapa también lo hace</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9960,8 +9965,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
-            <translation>Deshacer el último cambio del borrador (Ctrl+Z sobre el mapa)</translation>
+            <source>Take the last change of the draft back; Ctrl+Z over the map does so too</source>
+            <translation>Deshacer el último cambio del borrador; Ctrl+Z sobre el mapa también lo hace</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />

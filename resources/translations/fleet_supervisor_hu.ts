@@ -4492,11 +4492,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
-            <source>{metres:.2f} m off</source>
-            <translation>{metres:.2f} m eltérés</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/command_log.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} ({robot}) nem vezet sehová.</translation>
         </message>
@@ -4504,6 +4499,11 @@
             <location filename="../../plugin/panel/command_log_model.py" />
             <source>Details</source>
             <translation>Részletek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log_model.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m eltérés</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_log_model.py" />
@@ -5963,8 +5963,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Bójaelrendezés elhelyezése: a kurzornál látszik, a görgő forgatja (Shift: finoman), egy kattintás elhelyezi, a Ctrl+Z visszavonja, az Esc befejezi; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez vezet. A robotoknak semmi sem megy</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it, with Shift finely, a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Bójaelrendezés elhelyezése: a kurzornál látszik, a görgő forgatja, Shifttel finoman, egy kattintás elhelyezi, a Ctrl+Z visszavonja, az Esc befejezi; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez vezet. A robotoknak semmi sem megy</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
@@ -7321,6 +7321,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
             <translation>Például ívek "clearance" mezője, vagy tábláknál 2.2; az elem magassága onnan számít. A robot síkjának felső magassága kihagyja, ami felette kezdődik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
+            <source>There is no obstacle in the window, and no layer reaches it: the layers lie from ({x_min:.0f}, {y_min:.0f}) to ({x_max:.0f}, {y_max:.0f}) in the site frame. Check the order of the window's numbers, their CRS and the site CRS. To a robot this map says that all is free.</source>
+            <translation>Nincs akadály az ablakban, és egyetlen réteg sem ér el odáig: a rétegek a telephelyi keretben ({x_min:.0f}, {y_min:.0f}) és ({x_max:.0f}, {y_max:.0f}) között vannak. Ellenőrizze az ablak számainak sorrendjét, a vetületüket és a telephely vetületét. Egy robotnak ez a térkép azt mondja, hogy minden szabad.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -9755,8 +9760,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
-            <translation>Minden robot most megáll, és egyik sem küldhető sehová, amíg egy felügyelő fel nem oldja ({emergency_keys})</translation>
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({one_key} or {other_key})</source>
+            <translation>Minden robot most megáll, és egyik sem küldhető sehová, amíg egy felügyelő fel nem oldja ({one_key} vagy {other_key})</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9805,8 +9810,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Let the route begin at its end (R over the map)</source>
-            <translation>Az útvonal a végén kezdődjön (R a térkép felett)</translation>
+            <source>Let the route begin at its end; R over the map does so too</source>
+            <translation>Az útvonal a végén kezdődjön; a térkép fölött az R is ezt teszi</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9815,8 +9820,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
-            <translation>A visszavont változás megismétlése (Ctrl+Shift+Z a térkép felett)</translation>
+            <source>Make the change again that was taken back; Ctrl+Shift+Z over the map does so too</source>
+            <translation>A visszavont változás megismétlése; a térkép fölött a Ctrl+Shift+Z is ezt teszi</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
@@ -9895,8 +9900,8 @@
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />
-            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
-            <translation>A vázlat utolsó változásának visszavonása (Ctrl+Z a térkép felett)</translation>
+            <source>Take the last change of the draft back; Ctrl+Z over the map does so too</source>
+            <translation>A vázlat utolsó változásának visszavonása; a térkép fölött a Ctrl+Z is ezt teszi</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/actions.py" />

@@ -454,7 +454,7 @@ class LayoutAction:
         self.action.setObjectName("fleet_cone_layout")
         self.action.setToolTip(
             tr(
-                "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a "
+                "Place a cone layout: it is shown under the cursor, the wheel turns it, with Shift finely, a "
                 "click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter "
                 "places it, F2 leads to its dimensions. Nothing is sent to robots"
             )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeedback,
@@ -13,12 +14,14 @@ from qgis.core import (
     QgsProcessingParameterExpression,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterNumber,
+    QgsVectorLayer,
 )
 
 from ....robot_bridge.core.errors import RobotMapError
 from ....robot_bridge.core.robotmap.builder import SurroundingOutlines, build_map
-from ....robot_bridge.core.robotmap.model import RobotMap, Window
+from ....robot_bridge.core.robotmap.model import Border, RobotMap, Window
 from ...layers.obstacle_layers import ObstacleReading
+from ...layers.site_transform import Bounds, SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_page
 from ..common import export_parameters
@@ -123,6 +126,7 @@ class ExportRobotMap(FleetAlgorithm):
             self._plan = export_parameters.read_export_parameters(self, parameters, context)
             layers = export_parameters.obstacle_layers(self, parameters, context)
             warn_of_profile(self, parameters, context, layers, feedback)
+            self._bounds = _bounds_of(layers, self._plan.site)
         return True
 
     def processAlgorithm(
@@ -142,7 +146,7 @@ class ExportRobotMap(FleetAlgorithm):
                 return {}
             write_whole(plan.target, content)
             around = SurroundingOutlines(outlines).around(border)
-            warnings = _reported(reading, robot_map, around, feedback)
+            warnings = _reported(reading, robot_map, around, self._bounds, feedback)
             _report_size(plan.window, robot_map, text, content, feedback)
         feedback.setProgress(100)
         counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
@@ -197,15 +201,55 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
 
 
+def _bounds_of(layers: Sequence[QgsVectorLayer], site: SiteGeoreference) -> Bounds | None:
+    """Return the bounds in the site frame of all ``layers``, None where those of one are not known."""
+    found = []
+    for layer in layers:
+        extent = layer.extent()
+        if not extent.isNull():
+            found.append(site.of_layer(layer.name(), layer.crs()).bounds_of(extent))
+    known = [one for one in found if one is not None and np.isfinite(one).all()]
+    if not known or len(known) < len(found):
+        return None
+    lower, upper = np.min(known, axis=0), np.max(known, axis=0)
+    return float(lower[0]), float(lower[1]), float(upper[2]), float(upper[3])
+
+
+def _nothing_there(border: Border, bounds: Bounds | None) -> str:
+    """Return the warning of a map without obstacles; ``bounds`` are those of the layers."""
+    if bounds is not None:
+        x_min, y_min, x_max, y_max = bounds
+        apart_x = border.x_max < x_min or border.x_min > x_max
+        if apart_x or border.y_max < y_min or border.y_min > y_max:
+            return tr(
+                "There is no obstacle in the window, and no layer reaches it: the layers lie from "
+                "({x_min:.0f}, {y_min:.0f}) to ({x_max:.0f}, {y_max:.0f}) in the site frame. Check the order "
+                "of the window's numbers, their CRS and the site CRS. To a robot this map says that all is "
+                "free.",
+                x_min=x_min,
+                y_min=y_min,
+                x_max=x_max,
+                y_max=y_max,
+            )
+    return tr("There is no obstacle in the window: check its place and the site CRS.")
+
+
 def _reported(
-    reading: ObstacleReading, robot_map: RobotMap, around: Sequence[str], feedback: QgsProcessingFeedback
+    reading: ObstacleReading,
+    robot_map: RobotMap,
+    around: Sequence[str],
+    bounds: Bounds | None,
+    feedback: QgsProcessingFeedback,
 ) -> int:
-    """Push every warning and return their number; ``around`` are obstacles that contain the whole window."""
+    """Push every warning and return their number.
+
+    ``around`` are obstacles that contain the whole window, ``bounds`` those of the layers in the site frame.
+    """
     warnings = [*reading.warnings, *robot_map.warnings, *export_parameters.surrounding_note(around)]
     for warning in warnings:
         feedback.pushWarning(warning)
     if not robot_map.obstacles and not around:
-        feedback.pushWarning(tr("There is no obstacle in the window: check its place and the site CRS."))
+        feedback.pushWarning(_nothing_there(robot_map.border, bounds))
         return len(warnings) + 1
     return len(warnings)
 

@@ -455,3 +455,11 @@ def test_the_tree_is_what_qt_expects_of_a_model(log, gateway, wait):
     wait(lambda: len(rows(log)) == 1)
     assert isinstance(log.findChild(QTreeView, "fleet_command_log"), QTreeView)
     del tester
+
+
+def test_the_reason_of_a_failure_has_room_in_the_row(log):
+    view = log.view
+    log.resize(1000, 400)
+    view.resize(1000, 300)
+    (reason,) = (text for (text,) in rows(log, (3,)) if "blocked" in text)
+    assert view.columnWidth(3) > view.fontMetrics().horizontalAdvance(reason) + 12

@@ -156,10 +156,17 @@ def test_a_broken_feature_is_a_warning_with_layer_and_id_and_the_rest_is_exporte
     assert done.results["WARNING_COUNT"] == 3
 
 
-def test_a_window_with_nothing_in_it_is_a_map_and_a_warning(export, house):
-    done = export(house, CENTER="5000,5000")
+def test_a_window_with_nothing_in_it_is_a_map_and_a_warning(export, house, make_layer):
+    far = "Polygon((60 60, 70 60, 70 70, 60 70, 60 60))"
+    done = export(
+        house, make_layer("far", "Polygon", features=[(far, 4.0)]), CENTER="40,40", WIDTH=4, HEIGHT=4
+    )
     assert done.map.obstacles == ()
     assert done.warnings == ["There is no obstacle in the window: check its place and the site CRS."]
+    done = export(house, CENTER="5000,5000")
+    assert done.map.obstacles == ()
+    (warning,) = done.warnings
+    assert "no layer reaches it: the layers lie from (10, 10) to (20, 20) in the site frame" in warning
 
 
 def test_the_toolbox_finds_help_and_icon(provider):
