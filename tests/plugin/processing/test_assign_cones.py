@@ -262,7 +262,7 @@ def test_a_layout_is_assigned_by_a_script(by_words, root, files, placed):
 
 def test_it_runs_as_the_guide_says(by_words, placed, root, tmp_path):
     guide = (root / "docs" / "assignment.md").read_text(encoding="utf-8")
-    for name, block in re.findall(r"^`(\w+\.geojson)`:\n\n((?:    .*\n)+)", guide, re.MULTILINE):
+    for name, block in re.findall(r"^`build/(\w+\.geojson)`:\n\n((?:    .*\n)+)", guide, re.MULTILINE):
         (tmp_path / name).write_text(block, encoding="utf-8")
     shutil.copy(placed, tmp_path)
     command = re.search(r"^    qgis_process\.bin (run fleet:assigncones (?:.*\\\n)*.*)$", guide, re.MULTILINE)
