@@ -337,6 +337,10 @@ class CommandLog(QWidget):
             self.export(path)
 
 
+COMMAND_DIGITS = 18
+"""Digits that are as wide as a cone target with its robot and place."""
+
+
 def _tree(model: LogModel) -> QTreeView:
     view = QTreeView()
     view.setObjectName("fleet_command_log")
@@ -348,9 +352,10 @@ def _tree(model: LogModel) -> QTreeView:
     view.setExpandsOnDoubleClick(False)
     view.setIndentation(14)
     shrink_view(view)
-    view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(longest_word(COMMAND_STATES.values())) + 12)
-    # Both share what is left: why a command failed is longer than what it is.
-    view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+    for column, widest in ((1, "0" * COMMAND_DIGITS), (2, longest_word(COMMAND_STATES.values()))):
+        view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 12)
+    view.header().setStretchLastSection(False)
+    # Why a command failed is longer than all else in its row.
     view.header().setSectionResizeMode(3, QHeaderView.ResizeMode.Stretch)
     return view
 

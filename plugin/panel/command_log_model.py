@@ -80,10 +80,10 @@ def cells(report: CommandReport) -> tuple[str, str, str, str]:
 
 
 def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str, str]:
-    """Return a step's row: time, operator and reason, state, and deviation."""
+    """Return a step's row: time, operator, state, and deviation or reason."""
     off = _off(report) if step.state is CommandState.REACHED else ""
-    because = f": {step.reason}" if step.reason else ""
-    return short_time(step.at), tr("by {by}", by=step.by) + because, state_word(report.op, step.state), off
+    by, state = tr("by {by}", by=step.by), state_word(report.op, step.state)
+    return short_time(step.at), by, state, off or step.reason or ""
 
 
 def summary(reports: Iterable[CommandReport]) -> str:

@@ -7,14 +7,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMessageLog, QgsMimeDataUtils, QgsProject
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsMessageLog,
+    QgsMimeDataUtils,
+    QgsProject,
+    QgsSettings,
+)
 from qgis.gui import (
     QgisInterface,
     QgsApplicationExitBlockerInterface,
     QgsCustomDropHandler,
 )
-from qgis.PyQt.QtCore import QMimeData, QObject, Qt, QTimer, pyqtSignal
-from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
+from qgis.PyQt.QtCore import QEvent, QMimeData, QObject, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow, QMenu, QToolBar
 
 from ...robot_bridge.core.messages.positions import AlarmLimits
 from ...robot_bridge.core.reconnection import FleetGateways
@@ -55,6 +62,54 @@ CONNECTING = request_topic("hello", "")
 """Topic of requests made with Connect."""
 MOST_ASKED = 3
 """Unanswered requests that are named to an operator who quits."""
+LAYERS_WIDTH = 230
+"""Pixels in which the names of layers can be read."""
+LEAST_MAP_WIDTH = 500
+"""Pixels that the map keeps when the list of layers is widened."""
+WIDENED = "fleet_supervisor/layers_widened"
+
+
+class LayersWidth(QObject):
+    """Widens the list of layers once in a profile. :meth:`remove` undoes the constructor.
+
+    QGIS first opens on 80 % of the screen. On a small one the fleet panel squeezes the panels at the left
+    there, and when the window is enlarged Qt gives all of the new width to the map.
+    """
+
+    def __init__(self, window: QMainWindow, parent: QObject):
+        super().__init__(parent)
+        self._window = window
+        self._check = QTimer(self)
+        self._check.setSingleShot(True)
+        self._check.timeout.connect(self._widen)
+        if not QgsSettings().value(WIDENED, False, bool):
+            window.installEventFilter(self)
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            # Once the panels have their new sizes.
+            self._check.start(0)
+        return False
+
+    def remove(self) -> None:
+        """Leave the panels as they are from now on."""
+        self._check.stop()
+        self._window.removeEventFilter(self)
+
+    def _widen(self) -> None:
+        window, side = self._window, Qt.DockWidgetArea.LeftDockWidgetArea
+        docks = window.findChildren(QDockWidget)
+        shown = [one for one in docks if one.isVisible() and not one.isFloating()]
+        left = [one for one in shown if window.dockWidgetArea(one) == side]
+        if not left:
+            return
+        lacks = LAYERS_WIDTH - left[0].width()
+        if lacks > 0:
+            if window.centralWidget().width() - lacks < LEAST_MAP_WIDTH:
+                return
+            window.resizeDocks(left[:1], [LAYERS_WIDTH], Qt.Orientation.Horizontal)
+        QgsSettings().setValue(WIDENED, True)
+        self.remove()
 
 
 class FleetWindow(QObject):
@@ -88,6 +143,7 @@ class FleetWindow(QObject):
         self.queue_marks = self._add(QueueMarks(self.desk))
         self.dock = FleetDock(self.desk, self.actions, self.queue_edits, window)
         self._add(Removal(self._remove_dock))
+        self._add(LayersWidth(window, self))
         self.road_layers = self._add(RoadLayers(self.desk.state, self.desk.project, self))
         self.standing_cones = self._add(StandingCones(self.desk.state, self.desk.project, self))
         self.toolbar: QToolBar = self._iface.addToolBar("Fleet Supervisor")

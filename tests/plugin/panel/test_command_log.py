@@ -75,7 +75,7 @@ def test_what_failed_says_why_at_once_and_in_its_step(log):
     assert model.index(2, 3).data() == "the way is blocked"
     assert model.rowCount(failed) == 2
     step = [model.index(1, column, failed).data() for column in (1, 2, 3)]
-    assert step == ["by r2: the way is blocked", "failed", ""]
+    assert step == ["by r2", "failed", "the way is blocked"]
     assert model.parent(model.index(1, 2, failed)) == failed
 
 
