@@ -23,7 +23,7 @@ from ...ui.glyphs import STATE_COLOURS, UNSURE_COLOUR
 from ...ui.language import tr
 from .grouped_robots import BorderHints, DensityPainter, Hint
 from .labels import Labels, NamesPainter, age_in_words
-from .robots_painter import NO_CIRCLES, RobotsPainter, circles, paint_circles
+from .robots_painter import CirclesPainter, RobotsPainter
 from .scene import InView, MapScene, Screen, in_view, screen_of
 from .task_painter import PathsPainter, PendingCommandPainter
 from .trails import TrailImage, Trails
@@ -41,7 +41,7 @@ class ScenePainter:
         self.robots = RobotsPainter()
         self._names = NamesPainter()
         self._borders = BorderHints()
-        self._circles = NO_CIRCLES
+        self._circles = CirclesPainter()
         self._viewed: tuple[MapScene, Screen, InView] | None = None
 
     @property
@@ -52,7 +52,7 @@ class ScenePainter:
     @property
     def is_whole(self) -> bool:
         """Whether everything is painted, so that no more frames are needed."""
-        return self._plans.is_whole
+        return self._plans.is_whole and self._circles.is_whole
 
     def prepare(self, placed: MapScene | None, screen: Screen) -> None:
         """Prepare a new scene: draw what is needed once and not in each frame.
@@ -65,7 +65,7 @@ class ScenePainter:
             return
         view = self._view(placed, screen)
         self._trails.extend(placed.robots, screen, placed.transform, placed.scene.now, view.pixels)
-        self._circles = circles(placed, view)
+        self._circles.prepare(placed, view, screen)
         self.robots.prepare(placed, view, screen)
         self._plans.prepare(placed, screen, self.robots.marks)
 
@@ -74,7 +74,7 @@ class ScenePainter:
         view = self._view(placed, screen)
         self._density.paint(painter, placed, screen)
         self._trails.paint(painter, screen)
-        paint_circles(painter, self._circles, placed, screen)
+        self._circles.paint(painter, placed, screen)
         self._plans.paint(painter, placed, view.pixels, screen, self.robots.marks)
         self._draft.paint(painter, placed, view.pixels, screen, self.robots.marks)
         self.robots.paint(painter, placed, view, screen)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import accumulate
@@ -10,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPixmap
+from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen, QPixmap
 
 from ....robot_bridge.core.messages.safety import RobotState
 from ...gateway_client.robot_states import STATES, UNSURE
@@ -275,6 +276,15 @@ FINE_VELOCITIES = 300
 CORNERS = 32
 SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
+LARGEST_PICTURE = 90.0
+"""Device pixels of radius up to which a circle is painted by a picture."""
+NEW_PICTURES = 12
+"""Pictures of circles drawn for one frame, 0.3 ms each."""
+MOST_PICTURES = 400
+"""Pictures kept, of up to 0.14 MB each."""
+MOST_LARGE = 4
+"""Large circles up to which each is filled and has its halo."""
+HALO = 2.6
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
 _UPWARDS = (_OFFLINE, _FRESH, UNSURE, _STALE, _LOST)
 """The order in which robots are painted, selected ones last: those that need attention are on top."""
@@ -450,25 +460,108 @@ def circles(placed: MapScene, view: InView) -> Circles:
     return wide[is_placed], corners[is_placed]
 
 
-def paint_circles(painter: QPainter, found: Circles, placed: MapScene, screen: Screen) -> None:
-    """Paint the circles of :func:`circles`: the robot is somewhere inside."""
-    rows, corners = found
-    if len(rows) == 0:
-        return
-    looks = placed.scene.robots.shown_as.take(rows).tolist()
-    colours = {look: UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]] for look in {*looks}}
-    halo, outlines = pen(PAPER, 2.6, 0.55), {look: pen(colour, 1.2) for look, colour in colours.items()}
-    fills = {look: QColor(colour) for look, colour in colours.items()}
-    for fill in fills.values():
-        fill.setAlpha(30)
-    pixels = screen.pixels(corners.reshape(-1, 2)).reshape(corners.shape)
-    for look, circle in zip(looks, map(polygon, pixels), strict=True):
-        painter.setPen(halo)
-        painter.setBrush(fills[look])
-        painter.drawPolygon(circle)
-        painter.setPen(outlines[look])
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPolygon(circle)
+class CirclesPainter:
+    """Paints circles of accuracy: the robot is somewhere inside.
+
+    Small ones are pictures, drawn once for each size and colour. Large ones are drawn each time; many of
+    those as thin lines.
+    """
+
+    def __init__(self) -> None:
+        self._found = NO_CIRCLES
+        self._pictures: dict[CircleKey, QPixmap] = {}
+        self.is_whole = True
+        """Whether every small circle has its picture; one without is a thin line until then."""
+
+    def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
+        """Find the circles of a new scene, and draw pictures for :meth:`paint`, a few at once."""
+        self._found = circles(placed, view)
+        around, _, keys = self._on_screen(placed, screen)
+        missing = {key: k for k, key in enumerate(keys) if key and key not in self._pictures}
+        if len(self._pictures) + len(missing) > MOST_PICTURES:
+            self._pictures.clear()
+        for key, k in [*missing.items()][:NEW_PICTURES]:
+            self._pictures[key] = _circle_picture(around[k], key)
+        self.is_whole = len(missing) <= NEW_PICTURES
+
+    def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
+        """Paint the circles that were found last."""
+        around, middle, keys = self._on_screen(placed, screen)
+        looks = placed.scene.robots.shown_as.take(self._found[0]).tolist()
+        thin = {look: QPen(_colour_of(look), 0.0) for look in {*looks}}
+        is_many = keys.count(None) > MOST_LARGE
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, not is_many)
+        # On whole device pixels: Qt blends a picture that lies between them many times slower.
+        pixels = (np.rint(middle * screen.ratio) / screen.ratio).tolist()
+        around += middle[:, None]
+        for corners, (x, y), look, key in zip(around, pixels, looks, keys, strict=True):
+            picture = self._pictures.get(key)
+            if picture is not None:
+                half = picture.width() / 2 / screen.ratio
+                painter.drawPixmap(QPointF(x - half, y - half), picture)
+            elif key or is_many:
+                # Qt draws a line of one pixel in a tenth of the time.
+                painter.setPen(thin[look])
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                painter.drawPolygon(polygon(corners))
+            else:
+                _draw_circle(painter, corners, look)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+
+    def _on_screen(self, placed: MapScene, screen: Screen) -> tuple[Points, Points, list[CircleKey | None]]:
+        """Return the circles in logical pixels: (m, :data:`CORNERS`, 2) corners from each one's middle, the
+        middles, (m, 2), and what their pictures are found by, None of large ones."""
+        rows, corners = self._found
+        shapes = screen.pixels(corners.reshape(-1, 2)).reshape(corners.shape)
+        middle = shapes.mean(axis=1)
+        shapes -= middle[:, None]
+        axes = np.rint(shapes[:, (0, CORNERS // 4)] * screen.ratio).reshape(-1, 4)
+        looks = placed.scene.robots.shown_as.take(rows).tolist()
+        return (
+            shapes,
+            middle,
+            [
+                (look, screen.ratio, *ends) if max(map(abs, ends)) <= LARGEST_PICTURE else None
+                for look, ends in zip(looks, axes.tolist(), strict=True)
+            ],
+        )
+
+
+CircleKey = tuple[float, ...]
+"""What makes circles of accuracy look the same: display state, pixel ratio, and from the middle to the ends
+of two axes that are perpendicular on the site, x and y each, in whole device pixels."""
+
+
+def _circle_picture(around: Points, key: CircleKey) -> QPixmap:
+    """Return a circle with its corners ``around`` (0, 0), in the middle of its picture."""
+    look, ratio, *_ = key
+    side = 2 * math.ceil(np.abs(around).max() * ratio + HALO * ratio)
+    picture = QPixmap(side, side)
+    picture.fill(QColor(0, 0, 0, 0))
+    with painting(picture) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(side / 2, side / 2)
+        painter.scale(ratio, ratio)
+        _draw_circle(painter, around, int(look))
+    picture.setDevicePixelRatio(ratio)
+    return picture
+
+
+def _draw_circle(painter: QPainter, corners: Points, look: int) -> None:
+    """Draw a circle of accuracy with (n, 2) ``corners`` in the colour of a display state."""
+    colour, circle = _colour_of(look), polygon(corners)
+    fill = QColor(colour)
+    fill.setAlpha(30)
+    painter.setPen(pen(PAPER, HALO, 0.55))
+    painter.setBrush(fill)
+    painter.drawPolygon(circle)
+    painter.setPen(pen(colour, 1.2))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawPolygon(circle)
+
+
+def _colour_of(look: int) -> QColor:
+    return UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]]
 
 
 def _velocities(

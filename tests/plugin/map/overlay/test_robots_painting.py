@@ -187,6 +187,61 @@ def test_a_circle_larger_than_the_map_knows_takes_no_other_from_it(canvas, site)
     assert np.isfinite(corners).all()
 
 
+@pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:4326"])
+def test_a_circle_of_accuracy_is_painted_from_its_picture_as_it_is_drawn(canvas, site, crs, monkeypatch):
+    scene = scene_of(
+        (60.3, 50.4, math.nan, RobotState.LOST), (75, 60, math.nan, RobotState.FRESH), accuracy=15
+    )
+    overlay = show(canvas, site, scene, crs, 20.0)
+    overlay.draw_arrows(False)
+    by_pictures = canvas.grab().toImage()
+    monkeypatch.setattr(robots_painter, "LARGEST_PICTURE", 0.0)
+    overlay.prepare()
+    drawn = canvas.grab().toImage()
+    pictures, drawings = (
+        robots_painter.pixels_of(image.convertToFormat(QImage.Format.Format_RGB32)).view(np.uint8)
+        for image in (by_pictures, drawn)
+    )
+    off = np.abs(pictures.astype(int) - drawings).reshape(-1, 4).max(axis=1)
+    # The picture is moved by at most half a pixel; by a whole one the rims would be off by 0.7 on average.
+    assert 0 < off[off > 8].sum() / len(off) < 0.5
+    assert np.count_nonzero(drawings != 255) > 0.05 * len(off)
+
+
+def test_circles_of_accuracy_are_drawn_once_for_each_size_a_few_in_a_frame(canvas, site, monkeypatch):
+    made, make = [], robots_painter._circle_picture
+    monkeypatch.setattr(robots_painter, "_circle_picture", lambda *of: (made.append(of[-1]), make(*of))[1])
+    number = 2 * robots_painter.NEW_PICTURES
+    scene = scene_of(*[(3.0 + 2.0 * k, 50, 0.0, RobotState.FRESH) for k in range(2 * number)])
+    scene = dataclasses.replace(
+        scene, robots=dataclasses.replace(scene.robots, accuracy=np.tile(4.0 + np.arange(number) * 0.4, 2))
+    )
+    overlay = show(canvas, site, scene)
+    assert len(made) == robots_painter.NEW_PICTURES and not overlay.is_whole
+    overlay.prepare()
+    assert overlay.is_whole
+    canvas.grab()
+    drawn = len(made)
+    assert drawn == len({*made}) <= number
+    scene.robots.xy[:, 1] += 0.37
+    overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
+    canvas.grab()
+    assert len(made) == drawn
+
+
+def test_many_large_circles_of_accuracy_are_lines_without_a_filling(canvas, site):
+    def tinted(number):
+        overlay = show(canvas, site, scene_of(*[(60, 50, 0.0, RobotState.FRESH)] * number, accuracy=35.0))
+        at = expected(canvas, site, 60, 80)
+        inside = QColor(canvas.grab().toImage().pixel(*map(round, at))).name()
+        rim = len(spots(canvas, BLUE, 60))
+        canvas.scene().removeItem(overlay)
+        return inside != "#ffffff", rim > 300
+
+    assert tinted(robots_painter.MOST_LARGE) == (True, True)
+    assert tinted(robots_painter.MOST_LARGE + 1) == (False, True)
+
+
 def test_many_robots_are_drawn_small_and_those_to_be_noticed_larger(canvas, site):
     def width(colour, number):
         grid = [(3.0 * (k % 40), 3.0 * (k // 40), math.nan, RobotState.FRESH) for k in range(number)]
