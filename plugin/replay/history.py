@@ -226,7 +226,7 @@ class History:
         self._count = 0
         self._sorted: Numbers | None = None
         self._first = np.empty(0, dtype=np.intp)
-        self._extent = np.empty((0, 2))
+        self._extents = np.empty((0, 2, 2))
 
     def __len__(self) -> int:
         return self._count
@@ -243,10 +243,11 @@ class History:
         return self._sorted is not None
 
     @property
-    def extent(self) -> Numbers:
-        """The least and the greatest x and y of all positions, (2, 2) metres; empty where there are none."""
+    def extents(self) -> Numbers:
+        """Of each robot the least and the greatest x and y of its positions, (n, 2, 2) metres in the order of
+        :attr:`names`."""
         self._arrange()
-        return self._extent
+        return self._extents
 
     def add(self, places: Sequence[Sequence]) -> None:
         """Add places as sent by the gateway: robot, time, x, y, theta, v, and more.
@@ -309,7 +310,7 @@ class History:
         # They came oldest first: a stable sort by robots alone takes a tenth of the time.
         whole = whole[np.argsort(whole[:, 0].astype(np.uint16), kind="stable")]
         self._first = np.searchsorted(whole[:, 0], np.arange(len(self.names) + 1))
-        self._extent = _extent(whole)
+        self._extents = _extents(whole, self._first[:-1])
         # Further pages are newer than these of the same robot, so that nothing is stored twice.
         self._pages = [whole]
         self._sorted = whole
@@ -329,10 +330,12 @@ class History:
         return begin - 1
 
 
-def _extent(table: Numbers) -> Numbers:
+def _extents(table: Numbers, first: npt.NDArray[np.intp]) -> Numbers:
+    """Return the least and the greatest x and y of each robot, whose rows begin at ``first``, (n, 2, 2)."""
     # Column by column: numpy is slow where it goes along rows of two.
-    columns = [table[:, column] for column in (2, 3)] if len(table) else []
-    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
+    columns = table[:, 2], table[:, 3]
+    ends = [[end.reduceat(column, first) for column in columns] for end in (np.minimum, np.maximum)]
+    return np.array(ends).transpose(2, 0, 1)
 
 
 def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[np.bool_]) -> RobotArrays:

@@ -95,15 +95,24 @@ class ReplayMap(QgsMapCanvas):
         self.refresh()
 
     def show_all(self, history: History) -> None:
-        """Show every place in ``history``, and its surroundings.
+        """Show where each robot in ``history`` was, and its surroundings.
 
-        :raises MapTransformError: when the site has no place in the map's CRS.
+        A robot that was somewhere without a place in the map's CRS is left out.
+
+        :raises MapTransformError: when that holds for all of them.
         """
         if self._site is None or not len(history):
             return
-        least, greatest = history.extent
-        corners = np.array([least - AROUND, greatest + AROUND])
-        show_places(self, self._place().to_map(corners))
+        around = history.extents + np.array([[-AROUND], [AROUND]])
+        # The corners of each robot's box: (least, greatest) of x with (least, greatest) of y.
+        corners = np.stack([around[:, (0, 1, 1, 0), 0], around[:, (0, 0, 1, 1), 1]], axis=2)
+        places = self._place().to_map_or_nan(corners)
+        placed = places[np.isfinite(places[:, 0, 0])]
+        if len(placed):
+            show_places(self, placed.reshape(-1, 2))
+        else:
+            # It raises the reason.
+            self._place().to_map(corners.reshape(-1, 2))
 
     def follow(self, *_what: object) -> None:
         """Copy the live map's layers, CRS and rotation; driven paths are above the layers."""

@@ -80,7 +80,7 @@ def test_pages_that_come_after_a_look_join_those_before():
 
 def test_nothing_is_nowhere():
     assert History().at(T0).names == []
-    assert History().extent.size == 0
+    assert History().extents.size == 0
 
 
 @pytest.mark.parametrize("seconds", [-1.0, 0.0, 0.5, 7.0, 13.9, 14.0, 1000.0])
@@ -96,10 +96,17 @@ def test_of_many_robots_each_is_where_it_was_then(seconds):
         assert x == pytest.approx(min(seconds, ways[name].max()) if known else math.nan, nan_ok=True)
 
 
-def test_the_extent_has_every_position_and_no_more(history):
-    assert history.extent.tolist() == [[0.0, 0.0], [50.0, 5.0]]
-    history.add([place("r2", 80, -3.0, 7.0)])
-    assert history.extent.tolist() == [[-3.0, 0.0], [50.0, 7.0]]
+def test_the_extent_of_each_robot_has_every_position_of_it_and_no_more(history):
+    of_each = {
+        name: history.table[history.table[:, 0] == row][:, 2:4] for row, name in enumerate(history.names)
+    }
+    assert history.extents.tolist() == [
+        [at.min(axis=0).tolist(), at.max(axis=0).tolist()] for at in of_each.values()
+    ]
+    history.add([place("r2", 80, -3.0, 7.0), place("r9", 81, 2.0, 4.0)])
+    least, greatest = history.extents[history.names.index("r2")].tolist()
+    assert least[0] == -3.0 and greatest[1] == 7.0
+    assert history.extents[history.names.index("r9")].tolist() == [[2.0, 4.0], [2.0, 4.0]]
 
 
 @pytest.mark.parametrize("row", [["r1", T0], ["r1", None, 0, 0, 0, 0], ["r1", T0, math.nan, 0, 0, 0]])

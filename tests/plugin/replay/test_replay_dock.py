@@ -6,11 +6,14 @@ import itertools
 import time
 from itertools import groupby, pairwise
 
+import numpy as np
 import pytest
 from fleet_supervisor.plugin.map.overlay import task_painter
 from fleet_supervisor.plugin.replay import replay_map
+from fleet_supervisor.plugin.replay.history import History
 from fleet_supervisor.plugin.ui import scheduling
-from qgis.core import QgsProject
+from fleet_supervisor.plugin.ui.errors import MapTransformError
+from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject
 from qgis.gui import QgsLayerTreeMapCanvasBridge
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QTimer
@@ -66,6 +69,34 @@ def test_what_was_driven_is_on_the_replays_map_and_not_on_the_live_one(loaded, i
 def test_the_map_turns_with_the_live_one(loaded, at_desk):
     at_desk.desk.canvas.setRotation(30.0)
     assert loaded.map.rotation() == 30.0
+
+
+def test_one_robot_without_a_place_on_the_map_does_not_keep_the_others_from_being_shown(loaded, at_desk):
+    at_desk.desk.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:4326"))
+    history = History()
+    history.add(
+        [[name, k, x + k, 40.0, 0.0, 1.0] for name, x in (("r1", 50), ("far", 1e9)) for k in range(3)]
+    )
+    loaded.map.show_all(history)
+    seen, corner = (
+        loaded.map.extent(),
+        at_desk.desk.site_to_canvas.transform().to_map(np.array([[51.0, 40.0]])),
+    )
+    assert seen.contains(QgsPointXY(*corner[0].tolist())) and seen.width() < 0.01
+    nowhere = History()
+    nowhere.add([["far", 1, 1e9, 40.0, 0.0, 1.0]])
+    with pytest.raises(MapTransformError, match="has no place in"):
+        loaded.map.show_all(nowhere)
+
+
+def test_all_that_was_driven_is_shown_on_a_map_that_is_turned(loaded, at_desk):
+    history = History()
+    history.add([["r1", k, 50.0 + 20 * k, 40.0 + 20 * k, 0.0, 1.0] for k in range(3)])
+    at_desk.desk.canvas.setRotation(45.0)
+    loaded.map.show_all(history)
+    ends = at_desk.desk.site_to_canvas.transform().to_map(np.array([[50.0, 40.0], [90.0, 80.0]]))
+    pixels = loaded.map.overlay.screen().pixels(ends)
+    assert (pixels >= 0).all() and (pixels <= [loaded.map.width(), loaded.map.height()]).all()
 
 
 def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_before(
