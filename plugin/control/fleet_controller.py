@@ -17,7 +17,7 @@ from ..gateway_client.connection_status import ConnectionPhase, OperatorCredenti
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import RemovedRobots
 from ..layers.site_transform import SiteToCanvas
-from ..ui.errors import FleetError, NotSentError
+from ..ui.errors import FleetError, NotSentError, Removal, remove_all
 from ..ui.language import tr
 from ..ui.scheduling import UpdateScheduler
 from . import messages
@@ -184,12 +184,18 @@ class FleetController(QObject):
         self.state.pull()
 
     def shut_down(self) -> None:
-        """Stop collecting and wait for the connection's threads."""
-        self.state.stop()
-        self.checks.stop()
-        self.sending.outgoing.withdraw()
-        self._rules.remove()
-        self.connection.shut_down()
+        """Stop collecting and wait for the connection's threads.
+
+        :raises Exception: the first one raised by a part, after all the others have ended.
+        """
+        ends = (
+            self.state.stop,
+            self.checks.stop,
+            self.sending.outgoing.withdraw,
+            self._rules.remove,
+            self.connection.shut_down,
+        )
+        remove_all([Removal(end) for end in reversed(ends)])
 
     def _link_changed(self) -> None:
         if self.state.link.phase is not ConnectionPhase.CONNECTED:

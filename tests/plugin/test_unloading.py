@@ -6,6 +6,8 @@ import threading
 import time
 
 import pytest
+from fleet_supervisor.plugin.control.fleet_controller import FleetController
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import Qgis, QgsApplication, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QAction, QLineEdit
@@ -51,6 +53,24 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
         assert plugin.window is None
         assert left_behind(iface) == before
     assert iface.canvas.mapTool() is before_tool
+
+
+@pytest.mark.parametrize("part", ["checks.stop", "_rules.remove"])
+def test_a_part_of_the_desk_that_fails_at_its_end_keeps_no_other_from_ending(iface, gateway, wait, part):
+    desk = FleetController(iface.canvas, QgsProject.instance())
+    desk.open_link(gateway.url, "anna")
+    wait(lambda: desk.state.link.phase is ConnectionPhase.CONNECTED, what="the link")
+    owner, name = part.split(".")
+    end = getattr(getattr(desk, owner), name)
+
+    def fail():
+        end()
+        raise RuntimeError("stands in the way")
+
+    setattr(getattr(desk, owner), name, fail)
+    with pytest.raises(RuntimeError, match="stands in the way"):
+        desk.shut_down()
+    assert not desk.connection.is_open and not desk.connection.is_ending
 
 
 def test_what_is_not_answered_when_the_plugin_goes_stands_in_qgis_log(iface, gateway, make_robot, wait):
