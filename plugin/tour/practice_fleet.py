@@ -128,9 +128,14 @@ class PracticeFleet(QObject):
             robot = self._process()
             robot.setStandardOutputFile(QProcess.nullDevice())
             robot.setObjectName(name)
-            robot.errorOccurred.connect(self._robot_failed)
+            robot.errorOccurred.connect(self._robot_not_started)
             robot.finished.connect(self._robot_failed)
             robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}", WITH_QGIS])
+
+    def _robot_not_started(self, error: QProcess.ProcessError) -> None:
+        # A program that crashes has finished as well, which reports it.
+        if error == QProcess.ProcessError.FailedToStart:
+            self._robot_failed()
 
     def _robot_failed(self, *_: object) -> None:
         robot = self.sender()

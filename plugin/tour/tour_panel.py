@@ -24,6 +24,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..control.messages import MessageLabel
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
+from ..panel.connection_panel import URL_KEY
 from ..panel.window import FleetWindow
 from ..settings.profile import GatewayConnection
 from ..ui.dialogs import push_button
@@ -347,7 +348,7 @@ class TourAction(QObject):
         self.fleet.failed.connect(self._show_outcome)
         self.panel: TourPanel | None = None
         self._spotlight: Spotlight | None = None
-        self._url_before = ""
+        self._url_before = self._practice_url = ""
         self._offer: QgsMessageBarItem | None = None
         self.action = QAction(QIcon(str(ICON)), tr("Tour"), iface.mainWindow())
         self.action.setObjectName("fleet_tour_action")
@@ -379,10 +380,19 @@ class TourAction(QObject):
                 part.hide()
                 part.deleteLater()
         self.panel = self._spotlight = None
-        if self._practising():
-            self._window.desk.close_link()
-            self._window.dock.connection_panel.use(GatewayConnection("", self._url_before))
+        self._leave_practice()
         self.fleet.stop()
+
+    def _leave_practice(self) -> None:
+        """Disconnect from the practice fleet, and put back the address that was there before it."""
+        panel, settings = self._window.dock.connection_panel, QgsSettings()
+        if self._practice_url and panel.url() == self._practice_url:
+            self._window.desk.close_link()
+            panel.use(GatewayConnection("", self._url_before))
+        if self._practice_url and settings.value(URL_KEY) == self._practice_url:
+            # The operator has connected to it again by the button, which stores the address.
+            settings.setValue(URL_KEY, self._url_before)
+        self._practice_url = ""
 
     def remove(self) -> None:
         """Remove every part from the window."""
@@ -439,8 +449,9 @@ class TourAction(QObject):
 
     def _connect(self, url: str) -> None:
         panel = self._window.dock.connection_panel
-        if panel.url() != url:
+        if panel.url() not in (url, self._practice_url):
             self._url_before = panel.url()
+        self._practice_url = url
         panel.use(GatewayConnection("", url))
         try:
             # Not by the button: that would store the address for the next session.

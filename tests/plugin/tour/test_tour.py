@@ -13,7 +13,7 @@ from fleet_supervisor.plugin.tour import practice_fleet
 from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program
 from fleet_supervisor.plugin.tour.tour_panel import FLEET, OFFERED, PROJECT, STEPS, TourAction
 from qgis.core import QgsSettings
-from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
+from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, QProcess, Qt
 from qgis.PyQt.QtGui import QMouseEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QLabel, QPushButton, QWidget
@@ -69,6 +69,10 @@ def program_in(folder, first="true", then="sleep 600"):
     program.write_text(f"#!/bin/sh\n{first}\necho listening on ws://127.0.0.1:1\nexec {then}\n")
     program.chmod(0o755)
     return program
+
+
+def has_started(process):
+    return process.state() != QProcess.ProcessState.NotRunning
 
 
 def at_of(offer):
@@ -236,9 +240,35 @@ def test_a_fleet_that_runs_is_connected_to_again_after_disconnecting(iface, wait
     tour.remove()
 
 
+@pytest.mark.parametrize("stored", [False, True])
+def test_closed_after_disconnecting_it_leaves_no_address_of_a_fleet_that_is_gone(
+    iface, wait, tmp_path, stored
+):
+    tour = Tour(iface, PracticeFleet(program=str(program_in(tmp_path, then="cat"))))
+    panel, before = tour.window.dock.connection_panel, "ws://127.0.0.1:8765/desk"
+    panel.use(GatewayConnection("", before))
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    wait(lambda: "is connected" in tour.text("fleet_tour_said"), what="the fleet")
+    tour.desk.close_link()
+    if stored:
+        tour.window.actions.connect.trigger()
+        assert QgsSettings().value("fleet_supervisor/url") == "ws://127.0.0.1:1/desk"
+        tour.window.actions.connect.trigger()
+    tour.action.end()
+    assert panel.url() == before
+    assert QgsSettings().value("fleet_supervisor/url", before) == before
+    tour.remove()
+
+
 @pytest.mark.parametrize(
     ("robot", "why"),
-    [('rm "$0"', "not run: "), ("echo '#!/bin/sh\nexit 3' > $0", "not run: it ended with code 3")],
+    [
+        ('rm "$0"', "not run: "),
+        ("echo '#!/bin/sh\nexit 3' > $0", "not run: it ended with code 3"),
+        ("echo '#!/bin/sh\nkill -KILL $$' > $0", "not run: Process crashed"),
+    ],
 )
 def test_a_robot_that_does_not_run_is_named(iface, wait, tmp_path, robot, why):
     program = program_in(tmp_path, robot, "cat")
@@ -248,7 +278,8 @@ def test_a_robot_that_does_not_run_is_named(iface, wait, tmp_path, robot, why):
     tour.action.start()
     tour.go_to(at_of(FLEET))
     tour.click("fleet_tour_offer")
-    wait(lambda: len(said) == 3, what="the three robots")
+    wait(lambda: said and not any(map(has_started, tour.action.fleet._processes[1:])), what="three robots")
+    assert len(said) == 3
     assert all(
         any(f"practice robot {name} does {why}" in text for text in said) for name in ("r1", "r2", "r3")
     )
