@@ -234,13 +234,13 @@ class PendingCommand:
             )
         if self.kind == TARGETS:
             return tr_count(len(self.points), "1 cone for {robot}", "%n cones for {robot}", robot=self.robot)
-        told = tr("; along the roads {note}", note=self.note) if self.note else ""
+        along_roads = tr("; along the roads {note}", note=self.note) if self.note else ""
         return tr(
-            "Route for {robot}: {points} points, {length:.1f} m{told}",
+            "Route for {robot}: {points} points, {length:.1f} m{along_roads}",
             robot=self.robot,
             points=len(self.points),
             length=self.length,
-            told=told,
+            along_roads=along_roads,
         )
 
     def _way_in_words(self) -> str:

@@ -31,6 +31,8 @@ MOST_WAITING = 1
 AWAKE_EVERY = 1.0
 ASLEEP_AFTER = 8.0
 """Seconds: messages that waited in this computer for longer would be taken for new."""
+CA_PATIENCE = 3.0
+"""Seconds without an answer of the CA file's drive after which the operator is warned."""
 STOP_TRIES_EVERY = 0.5
 """Seconds between two attempts to connect at most, while a stop waits to be sent."""
 PIECE = 16_384
@@ -171,8 +173,24 @@ class GatewayClient:
             # In a thread: a CA file that does not answer must not keep the link from being given up. Once: it
             # may be on a share that goes with the network, and a stop waits for the next link.
             loop = asyncio.get_running_loop()
-            self._tls_context = await loop.run_in_executor(None, self._credentials.tls_context)
+            reading = loop.run_in_executor(None, self._credentials.tls_context)
+            await asyncio.wait({reading}, timeout=CA_PATIENCE)
+            if not reading.done() and self._credentials.ca_file:
+                self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, self._why_no_tls()))
+            self._tls_context = await reading
+            self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING))
         return {"ssl": self._tls_context}
+
+    def _why_no_tls(self) -> str:
+        """Return what is wrong while the CA file is not read."""
+        return tr(
+            "The CA file {file} has not answered for {seconds:g} s, so there is no link to {url} yet: the "
+            "drive that it is on may be away. The desk waits for it. If it stays away, press Disconnect and "
+            "choose a copy of the file on this computer.",
+            file=self._credentials.ca_file,
+            seconds=CA_PATIENCE,
+            url=self._url,
+        )
 
     def _connect(self, tls: dict[str, Any]) -> Any:
         options: dict[str, Any] = {

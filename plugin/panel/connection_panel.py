@@ -413,7 +413,7 @@ def _in_words(link: ConnectionStatus, site: SiteReport | None, now: float) -> st
     detail = _escaped(link.reason)
     if link.phase is ConnectionPhase.CONNECTED and site is not None:
         detail = " · ".join(_escaped(text) for text in (link.instead, site.name, link.who) if text)
-    if link.phase is ConnectionPhase.RETRYING:
+    if link.phase is ConnectionPhase.RETRYING and link.next_try is not None:
         word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
     dot = f'<span style="color:{colour}">⬤</span>'
     return f"{dot} <b>{word}</b>{' · ' if detail else ''}{detail}"

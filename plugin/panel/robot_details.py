@@ -116,7 +116,7 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         off = "" if report.deviation is None else tr(", {metres:.2f} m off", metres=report.deviation)
         because = f": {why}" if why else ""
         what = f"{command_in_words(report)}: {state_word(report.op, report.state)}{off}{because}"
-        text = tr("{told}, by {operator}", told=what, operator=report.operator)
+        text = tr("{command}, by {operator}", command=what, operator=report.operator)
         rows.append((time_of_day(requested_at(report)), text))
     return rows
 

@@ -225,10 +225,10 @@ class ReplayDock(ActionDock):
 
     def _show_banner(self, moment: float) -> None:
         if not self.clockwork.is_set:
-            self.banner.setText(tr("REPLAY · {told}", told=self._status))
+            self.banner.setText(tr("REPLAY · {status}", status=self._status))
             return
         self.banner.setText(
-            tr("REPLAY, not live · {moment} · {told}", moment=date_and_time(moment), told=self._status)
+            tr("REPLAY, not live · {moment} · {status}", moment=date_and_time(moment), status=self._status)
         )
 
     def _lay_out(self) -> None:

@@ -1366,8 +1366,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
-            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
-            <translation>Ruta per a {robot}: {points} punts, {length:.1f} m{told}</translation>
+            <source>Route for {robot}: {points} points, {length:.1f} m{along_roads}</source>
+            <translation>Ruta per a {robot}: {points} punts, {length:.1f} m{along_roads}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
@@ -1706,6 +1706,11 @@
             <location filename="../../plugin/gateway_client/connection.py" />
             <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
             <translation>Una aturada hauria d'esperar la resta d'una petició gran en la línia lenta cap a {url}: la connexió es torna a obrir, i l'aturada s'envia primer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>The CA file {file} has not answered for {seconds:g} s, so there is no link to {url} yet: the drive that it is on may be away. The desk waits for it. If it stays away, press Disconnect and choose a copy of the file on this computer.</source>
+            <translation>El fitxer de CA {file} no respon des de fa {seconds:g} s, així que encara no hi ha enllaç amb {url}: potser la unitat on és no està disponible. La consola l'espera. Si no torna, premeu Desconnecta i trieu una còpia del fitxer en aquest ordinador.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
@@ -3595,8 +3600,8 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} a {where}</translation>
+            <source>{surface} at {where}</source>
+            <translation>{surface} a {where}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -5273,6 +5278,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_details.py" />
+            <source>{command}, by {operator}</source>
+            <translation>{command}, per {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot} has sent no image lately</source>
             <translation>{robot} no ha enviat cap imatge darrerament</translation>
         </message>
@@ -5280,11 +5290,6 @@
             <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot}, selected last of several</source>
             <translation>{robot}, l'últim seleccionat de diversos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/robot_details.py" />
-            <source>{told}, by {operator}</source>
-            <translation>{told}, per {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
@@ -9239,13 +9244,13 @@
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY · {told}</source>
-            <translation>REPRODUCCIÓ · {told}</translation>
+            <source>REPLAY · {status}</source>
+            <translation>REPRODUCCIÓ · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY, not live · {moment} · {told}</source>
-            <translation>REPRODUCCIÓ, no en viu · {moment} · {told}</translation>
+            <source>REPLAY, not live · {moment} · {status}</source>
+            <translation>REPRODUCCIÓ, no en viu · {moment} · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />

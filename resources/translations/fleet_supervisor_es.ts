@@ -1366,8 +1366,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
-            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
-            <translation>Ruta para {robot}: {points} puntos, {length:.1f} m{told}</translation>
+            <source>Route for {robot}: {points} points, {length:.1f} m{along_roads}</source>
+            <translation>Ruta para {robot}: {points} puntos, {length:.1f} m{along_roads}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
@@ -1706,6 +1706,11 @@
             <location filename="../../plugin/gateway_client/connection.py" />
             <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
             <translation>Una parada tendría que esperar al resto de una petición grande en la línea lenta hacia {url}: la conexión se abre de nuevo, y la parada se envía primero.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>The CA file {file} has not answered for {seconds:g} s, so there is no link to {url} yet: the drive that it is on may be away. The desk waits for it. If it stays away, press Disconnect and choose a copy of the file on this computer.</source>
+            <translation>El archivo de CA {file} no responde desde hace {seconds:g} s, así que aún no hay enlace con {url}: puede que la unidad en la que está no esté disponible. La consola la espera. Si no vuelve, pulse Desconectar y elija una copia del archivo en este ordenador.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
@@ -3595,8 +3600,8 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} en {where}</translation>
+            <source>{surface} at {where}</source>
+            <translation>{surface} en {where}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -5273,6 +5278,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_details.py" />
+            <source>{command}, by {operator}</source>
+            <translation>{command}, por {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot} has sent no image lately</source>
             <translation>{robot} no ha enviado ninguna imagen últimamente</translation>
         </message>
@@ -5280,11 +5290,6 @@
             <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot}, selected last of several</source>
             <translation>{robot}, el último seleccionado de varios</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/robot_details.py" />
-            <source>{told}, by {operator}</source>
-            <translation>{told}, por {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
@@ -9239,13 +9244,13 @@
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY · {told}</source>
-            <translation>REPRODUCCIÓN · {told}</translation>
+            <source>REPLAY · {status}</source>
+            <translation>REPRODUCCIÓN · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY, not live · {moment} · {told}</source>
-            <translation>REPRODUCCIÓN, no en vivo · {moment} · {told}</translation>
+            <source>REPLAY, not live · {moment} · {status}</source>
+            <translation>REPRODUCCIÓN, no en vivo · {moment} · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />

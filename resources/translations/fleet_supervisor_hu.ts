@@ -1359,8 +1359,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
-            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
-            <translation>Útvonal ennek: {robot}: {points} pont, {length:.1f} m{told}</translation>
+            <source>Route for {robot}: {points} points, {length:.1f} m{along_roads}</source>
+            <translation>Útvonal ennek: {robot}: {points} pont, {length:.1f} m{along_roads}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/pending_command.py" />
@@ -1698,6 +1698,11 @@
             <location filename="../../plugin/gateway_client/connection.py" />
             <source>A stop would wait for the rest of a large request on the slow line to {url}: the link is opened again, and the stop sent first.</source>
             <translation>Egy megállításnak meg kellene várnia egy nagy kérés maradékát a lassú vonalon ide: {url}. A kapcsolat újra megnyílik, és a megállítás megy el először.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>The CA file {file} has not answered for {seconds:g} s, so there is no link to {url} yet: the drive that it is on may be away. The desk waits for it. If it stays away, press Disconnect and choose a copy of the file on this computer.</source>
+            <translation>A(z) {file} CA-fájl {seconds:g} másodperce nem válaszol, ezért még nincs kapcsolat ezzel: {url}. Lehet, hogy a meghajtó, amelyen van, nem érhető el. A kezelőpult vár rá. Ha nem jön vissza, nyomja meg a Bontás gombot, és válassza a fájl másolatát ezen a számítógépen.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection.py" />
@@ -3573,8 +3578,8 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} itt: {where}</translation>
+            <source>{surface} at {where}</source>
+            <translation>{surface} itt: {where}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/map/tools/road_tools.py" />
@@ -5243,6 +5248,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_details.py" />
+            <source>{command}, by {operator}</source>
+            <translation>{command}, kérte: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot} has sent no image lately</source>
             <translation>{robot} nem küldött képet mostanában</translation>
         </message>
@@ -5250,11 +5260,6 @@
             <location filename="../../plugin/panel/robot_details.py" />
             <source>{robot}, selected last of several</source>
             <translation>{robot}, a kijelöltek közül az utolsó</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/robot_details.py" />
-            <source>{told}, by {operator}</source>
-            <translation>{told}, kérte: {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
@@ -9176,13 +9181,13 @@
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY · {told}</source>
-            <translation>VISSZAJÁTSZÁS · {told}</translation>
+            <source>REPLAY · {status}</source>
+            <translation>VISSZAJÁTSZÁS · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />
-            <source>REPLAY, not live · {moment} · {told}</source>
-            <translation>VISSZAJÁTSZÁS, nem élő · {moment} · {told}</translation>
+            <source>REPLAY, not live · {moment} · {status}</source>
+            <translation>VISSZAJÁTSZÁS, nem élő · {moment} · {status}</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/replay_dock.py" />

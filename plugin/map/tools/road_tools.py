@@ -276,7 +276,7 @@ class SurfaceTool(QgsMapTool):
         digits = 6 if crs.isGeographic() else 2
         where = f"{place.x():.{digits}f}, {place.y():.{digits}f} ({crs.authid() or tr('no CRS')})"
         self._notices.info(
-            tr("{told} at {where}", told=_surface_text(_at(surfaces, place, crs)), where=where)
+            tr("{surface} at {where}", surface=_surface_text(_at(surfaces, place, crs)), where=where)
         )
 
     def _read_again(self) -> None:

@@ -21,7 +21,7 @@ THINGS = (
 COUNTED = re.compile(rf"\{{\w+\}}(?: of \{{\w+\}})? (?:(?!has\b)\w+ )?(?:{THINGS})\b")
 NEVER_ONE = {
     "route of {number} points": "a path has two points or more",
-    "Route for {robot}: {points} points, {length:.1f} m{told}": "a path has two points or more",
+    "Route for {robot}: {points} points, {length:.1f} m{along_roads}": "a path has two points or more",
     ", a path of {path_points} points": "a path has two points or more",
     "{off} of {points} points are not on a road surface.": "one point is told with its place",
     "The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.": "not one",

@@ -9,6 +9,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from fleet_supervisor.plugin.gateway_client import connection as connection_module
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.gateway_client.connection_status import (
     ROLES,
@@ -180,6 +181,19 @@ def test_a_link_is_given_up_while_its_ca_file_does_not_answer(connection, wait, 
         wait(lambda: connection.collect_updates() and not connection.is_ending, what="the end of the link")
     finally:
         os.close(writers.pop())
+
+
+def test_a_ca_file_that_does_not_answer_is_named_and_waited_for(connection, wait, tmp_path, monkeypatch):
+    monkeypatch.setattr(connection_module, "CA_PATIENCE", 0.05)
+    ca = tmp_path / "ca.pem"
+    os.mkfifo(ca)
+    connection.open("wss://127.0.0.1:9/desk", "Ada", OperatorCredentials("", str(ca)))
+    link = link_when(connection, wait, ConnectionPhase.RETRYING)
+    assert f"The CA file {ca} has not answered" in link.reason and "127.0.0.1:9" in link.reason
+    assert "choose a copy of the file on this computer" in link.reason
+    # It answers: here with nothing that a CA file could have.
+    ca.write_bytes(b"")
+    assert "cannot be used" in link_when(connection, wait, ConnectionPhase.FAILED).reason
 
 
 def test_a_revoked_token_ends_the_link_and_it_is_not_tried_again(connection, bridge, wait):
