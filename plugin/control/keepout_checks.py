@@ -35,6 +35,7 @@ from ..layers.reading import (
     file_state,
     has_features,
     is_empty,
+    is_gone,
 )
 from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
 from ..layers.site_transform import SiteToMapTransform, check_transform, line_of, transform_or_raise
@@ -215,7 +216,7 @@ class LayerReader:
         begin_reading()
         near = self._near(go_on)
         # Of a damaged file QGIS returns the features before the damage, and no error.
-        is_complete = not (self._provider == "ogr" and error_of_gdal())
+        is_complete = not (self._provider == "ogr" and (error_of_gdal() or is_gone(self._path)))
         if not self._has_features:
             self._has_features = has_features(self._features)
         if is_complete and not self._has_features and self._provider != IN_MEMORY:

@@ -81,6 +81,19 @@ def file_state(path: str) -> FileState:
     return found.st_dev, found.st_ino, found.st_size, *changed
 
 
+def is_gone(path: str) -> bool:
+    """Return whether the file ``path`` is missing, from a thread that may hang.
+
+    QGIS goes on reading what it has open. False for what GDAL alone finds, such as a file in an archive.
+    """
+    if not path or path.startswith("/vsi") or not Path(path).is_absolute():
+        return False
+    try:
+        return not Path(path).exists()
+    except (OSError, ValueError):
+        return True
+
+
 def begin_reading() -> None:
     """Clear GDAL's errors in this thread before a layer is read, for :func:`check_readable`."""
     if (gdal := _gdal()) is not None:

@@ -59,6 +59,25 @@ def test_a_layer_whose_file_goes_while_it_is_open_keeps_the_draft_here(
     assert "cannot be read" not in cone.draft_text
 
 
+@pytest.mark.parametrize("name", ["bays.gpkg", "bays.geojson"])
+def test_a_layer_whose_file_goes_is_not_read_from_what_qgis_still_has_open(
+    cone, layer_of, save_layer, tmp_path, name
+):
+    layer = save_layer(layer_of("Polygon", SQUARE), name)
+    layer.setName("Bays")
+    layer.setCustomProperty("fleet/role", "keepout")
+    QgsProject.instance().addMapLayer(layer)
+    # QGIS keeps the file open for other readers for a minute.
+    assert next(layer.getFeatures()).isValid()
+    (tmp_path / name).rename(tmp_path / "elsewhere")
+    assert next(layer.getFeatures()).isValid()
+    cone.click((20, 20))
+    assert cone.complained("The layer Bays cannot be read, so what is in it was not looked at.")
+    (tmp_path / "elsewhere").rename(tmp_path / name)
+    cone.click((30, 20))
+    assert "cannot be read" not in cone.draft_text
+
+
 def test_a_layer_without_a_crs_keeps_the_draft_here_wherever_the_map_draws_it(cone, layer_of):
     layer = layer_of("Polygon", SQUARE, crs="", role="keepout", name="Bays")
     assert not layer.crs().isValid()
