@@ -17,7 +17,7 @@ from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import TaskState
 from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import Ability, RobotState
-from ..gateway_client.command_cache import CommandCache, command_in_words, is_cone_put_down, place_of
+from ..gateway_client.command_cache import CommandCache, command_in_words
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import RobotView
@@ -478,37 +478,23 @@ def check_standing(draft: PendingCommand, state: FleetState) -> Findings:
         return Findings()
     ends = np.array(draft.points if draft.kind == TARGETS else draft.points[-1:], dtype=np.float64)
     texts = [] if draft.kind == TARGETS else list(_robots_at(ends[0], draft.robot, state))
-    cones = list(_cones_put_down(state))
+    cones = state.standing_cones()
     if cones:
-        places = np.array([place for _, place in cones])
+        places = np.array([(cone.x, cone.y) for cone in cones])
         for end, number, _ in sorted(zip(*pairs_between(ends, places, CLEAR_OF_CONES_M), strict=True)):
-            robot, (cone_x, cone_y) = cones[number]
+            cone = cones[number]
             texts.append(
                 tr(
                     "({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, "
                     "{cone_y:.2f}.",
                     x=ends[end, 0],
                     y=ends[end, 1],
-                    robot=robot,
-                    cone_x=cone_x,
-                    cone_y=cone_y,
+                    robot=cone.robot,
+                    cone_x=cone.x,
+                    cone_y=cone.y,
                 )
             )
     return Findings(warnings=tuple(texts))
-
-
-def _cones_put_down(state: FleetState) -> Iterator[tuple[str, Point]]:
-    """Return robot and place of each cone put down: by queues unless collected since, by single targets."""
-    known = set()
-    for cone in state.placed_cones:
-        known.add(cone.command)
-        if cone.collected_at is None:
-            yield cone.robot, (cone.x, cone.y)
-    for report in state.commands:
-        if is_cone_put_down(report) and report.command not in known:
-            place = place_of(report)
-            if place is not None:
-                yield report.robot, place
 
 
 def _robots_at(end: npt.NDArray[np.float64], but: str, state: FleetState) -> Iterator[str]:

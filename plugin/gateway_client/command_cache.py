@@ -17,6 +17,7 @@ from ..ui.language import tr
 from .state_words import COMMAND_STATES
 
 MOST_COMMANDS = 2000
+MOST_CONES = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
 """Operations that lead a robot to a place; the others are carried out where it stands."""
 
@@ -89,6 +90,8 @@ class CommandCache:
         self._reports: dict[str, CommandReport] = {}
         self._under_way: dict[str, CommandReport] = {}
         self._reached: dict[str, CommandReport] = {}
+        self._cones: dict[str, CommandReport] = {}
+        """Commands that put down a cone, also those that are too old for the others."""
 
     def __len__(self) -> int:
         return len(self._reports)
@@ -115,11 +118,15 @@ class CommandCache:
                 late, newest = late or requested_at(report) < newest, max(newest, requested_at(report))
             self._reports[report.command] = report
             changed.append(report)
+            if is_cone_put_down(report):
+                self._cones[report.command] = report
         if not changed:
             return []
         if late:
             # Commands requested before this desk connected arrive after those requested since.
             self._reports = dict(sorted(self._reports.items(), key=lambda item: requested_at(item[1])))
+        for command in list(self._cones)[:-MOST_CONES]:
+            del self._cones[command]
         self._forget_oldest()
         self._find_newest()
         return [report for report in changed if report.command in self._reports]
@@ -129,6 +136,7 @@ class CommandCache:
         self._reports.clear()
         self._under_way.clear()
         self._reached.clear()
+        self._cones.clear()
 
     def get(self, command: str) -> CommandReport | None:
         """Return a command, None if it is not known."""
@@ -145,6 +153,10 @@ class CommandCache:
     def reached_by(self, robot: str) -> CommandReport | None:
         """Return the target or path that ``robot`` reached last, None if none is known."""
         return self._reached.get(robot)
+
+    def cones_put_down(self) -> Iterable[CommandReport]:
+        """Return the commands that put down a cone, of very many the newest, as they were reached."""
+        return self._cones.values()
 
     def of(self, robot: str, most: int) -> list[CommandReport]:
         """Return the newest commands of a robot, newest first."""

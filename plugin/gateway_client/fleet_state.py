@@ -23,7 +23,7 @@ from ...robot_bridge.core.reconnection import FleetGateways
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from . import report_caches
-from .command_cache import CommandCache
+from .command_cache import CommandCache, place_of
 from .connection_status import ConnectionPhase, ConnectionStatus
 from .robot_states import RobotStates, RobotTable, RobotView
 
@@ -230,6 +230,21 @@ CONFLICTS_SILENT_AFTER = 10.0
 """Seconds without a report after which conflicts are not known any more."""
 
 
+class StandingCone(NamedTuple):
+    """A cone that ``robot`` put down at x, y, metres in the site frame, ``deviation`` metres off its target.
+
+    ``placed_at`` is seconds since 1970; ``placement`` is its number where a queue's task put it down.
+    """
+
+    x: float
+    y: float
+    robot: str
+    label: str
+    placed_at: float | None
+    deviation: float | None
+    placement: int | None = None
+
+
 class FleetState(QObject):
     """Collects the newest reports twenty times a second; nothing in it waits for the network.
 
@@ -352,6 +367,29 @@ class FleetState(QObject):
             # Even if an update raises, the next one is collected.
             self._is_collected = True
             self._timer.start(0)
+
+    def standing_cones(self) -> list[StandingCone]:
+        """Return the cones that were put down and not collected, those that queues' tasks put down first.
+
+        A cone that a single target put down stands at that target; the gateway keeps no account of it, so it
+        stands until the site changes.
+        """
+        standing, known = [], set()
+        for cone in self.placed_cones:
+            known.add(cone.command)
+            if cone.collected_at is None:
+                label = cone.label or cone.cone or ""
+                standing.append(
+                    StandingCone(
+                        cone.x, cone.y, cone.robot, label, cone.placed_at, cone.deviation, cone.placement
+                    )
+                )
+        for report in self.commands.cones_put_down():
+            place = place_of(report)
+            if report.command not in known and place is not None:
+                at = report.steps[-1].at if report.steps else None
+                standing.append(StandingCone(*place, report.robot, "", at, report.deviation))
+        return standing
 
     def robot(self, name: str) -> RobotView | None:
         """Return the present view of robot ``name``, None if it is not known."""

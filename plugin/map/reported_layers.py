@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import compress
 from operator import ne
 from typing import Any, NamedTuple
@@ -37,8 +37,8 @@ from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.roads import ClosureReport, ConflictReport
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..gateway_client.command_cache import is_cone_put_down, place_of
-from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.command_cache import is_cone_put_down
+from ..gateway_client.fleet_state import FleetState, StandingCone
 from ..gateway_client.robot_states import STATES, RobotStates
 from ..gateway_client.state_words import ROBOT_STATES
 from ..layers import live_layers
@@ -471,55 +471,32 @@ MOST = 2000
 
 
 class StandingCones(QObject):
-    """A layer of the cones that queues' tasks put down and nobody has collected, and of cone targets that
-    were reached, straight or along a path. :meth:`remove` removes it from the project.
-    """
+    """A layer of the cones of :meth:`.FleetState.standing_cones`, which :meth:`remove` removes."""
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._state = state
-        self._reached: dict[str, CommandReport] = {}
         self._layer = live_layers.RowLayer(
             project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
         )
-        state.commands_changed.connect(self._add_reached)
+        state.commands_changed.connect(self._commands_changed)
         state.placed_cones_changed.connect(self._show)
-        state.site_changed.connect(self._site_changed)
+        state.site_changed.connect(self._show)
 
     def remove(self) -> None:
         """Remove the layer from the project."""
         self._layer.remove()
 
-    def _add_reached(self, reports: Iterable[CommandReport]) -> None:
-        new = {report.command: report for report in reports if is_cone_put_down(report)}
-        if new:
-            self._reached.update(new)
-            for command in list(self._reached)[:-MOST]:
-                del self._reached[command]
+    def _commands_changed(self, reports: Iterable[CommandReport]) -> None:
+        if any(map(is_cone_put_down, reports)):
             self._show()
 
-    def _site_changed(self) -> None:
-        # Another site's commands are out of the cache by now.
-        self._reached = {
-            command: one for command, one in self._reached.items() if command in self._state.commands
-        }
-        self._show()
-
     def _show(self, *_: object) -> None:
-        self._layer.show(list(self._rows())[-MOST:], self._state.site)
+        self._layer.show(list(map(_cone_row, self._state.standing_cones()[-MOST:])), self._state.site)
 
-    def _rows(self) -> Iterator[live_layers.Row]:
-        known = set()
-        for cone in self._state.placed_cones:
-            known.add(cone.command)
-            if cone.collected_at is None:
-                values = [cone.robot, cone.label or cone.cone or "", date_and_time(cone.placed_at)]
-                yield [(cone.x, cone.y)], [*values, cone.deviation]
-        for command, report in self._reached.items():
-            place = place_of(report)
-            if command not in known and place is not None:
-                at = report.steps[-1].at if report.steps else None
-                yield [place], [report.robot, "", date_and_time(at), report.deviation]
+
+def _cone_row(cone: StandingCone) -> live_layers.Row:
+    return [(cone.x, cone.y)], [cone.robot, cone.label, date_and_time(cone.placed_at), cone.deviation]
 
 
 def _style_cones(layer: QgsVectorLayer) -> None:

@@ -291,8 +291,8 @@ class PlanEditor(QObject):
         """Return the positions of cones that the plan does not collect, (n, 2)."""
         cones = [
             (one.x, one.y)
-            for one in self._desk.state.placed_cones
-            if one.collected_at is None and one.placement not in collected
+            for one in self._desk.state.standing_cones()
+            if one.placement is None or one.placement not in collected
         ]
         return np.array(cones, dtype=float).reshape(-1, 2)
 

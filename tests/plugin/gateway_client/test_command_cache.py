@@ -7,6 +7,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.gateway_client import command_cache
 from fleet_supervisor.plugin.gateway_client.command_cache import (
     CommandCache,
     PathPoints,
@@ -18,6 +19,7 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from fleet_supervisor.robot_bridge.core.reconnection import GatewayAddresses
 
 WAY = [[0.5 * k, 20.0 + 0.25 * k] for k in range(600)]
@@ -88,3 +90,23 @@ def test_every_way_on_which_commands_come_packs_them():
     protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, ManualClock())
     protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "command", "params": told()}))
     assert isinstance(mailbox.collect().commands["c1"].params["points"], PathPoints)
+
+
+def test_a_cone_that_was_put_down_is_known_beyond_the_newest_commands(monkeypatch):
+    monkeypatch.setattr(command_cache, "MOST_COMMANDS", 3)
+    monkeypatch.setattr(command_cache, "MOST_CONES", 2)
+    cache = CommandCache()
+
+    def reach(command, cone):
+        steps = [CommandStep(CommandState.REACHED, float(command), "r1")]
+        params = {"x": float(command), "y": 0.0, "cone": cone}
+        cache.merge(
+            [CommandReport(str(command), "r1", "SetPosEnd", params, "anna", CommandState.REACHED, steps)]
+        )
+
+    for number in range(12):
+        reach(number, cone=number < 4)
+    assert [report.command for report in cache.cones_put_down()] == ["2", "3"]
+    assert "3" not in cache
+    cache.clear()
+    assert not list(cache.cones_put_down())

@@ -6,6 +6,7 @@ import threading
 
 import pytest
 from fleet_supervisor.plugin.planning import proposal
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget
@@ -29,6 +30,14 @@ def test_a_preview_gives_each_robot_the_cones_near_to_it_and_sends_nothing(panel
     assert panel.bar.text.text().endswith("(quick preview, along straight lines)")
     told, how = panel.bar.text.toolTip().rsplit("\n", 1)
     assert (told, how) == (panel.bar.text.text(), "Found by: preview. Ways along: straight lines.")
+
+
+def test_a_plan_keeps_clear_of_cones_that_single_targets_put_down(panel, gateway, wait):
+    gateway._queue("single", "r1", "SetPosEnd", {"x": 60.0, "y": 52.0, "cone": True})
+    gateway.step("single", CommandState.REACHED, "r1")
+    wait(lambda: panel._desk.state.standing_cones(), what="the cone")
+    planned(panel, wait)
+    assert panel.drafts.draft.ways.cones.tolist() == [[60.0, 52.0]]
 
 
 def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait, endless):
