@@ -476,6 +476,9 @@ class CirclesPainter:
     def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
         """Find the circles of a new scene, and draw pictures for :meth:`paint`, a few at once."""
         self._found = circles(placed, view)
+        if len(self._found[0]) == 0:
+            self.is_whole = True
+            return
         around, _, keys = self._on_screen(placed, screen)
         missing = {key: k for k, key in enumerate(keys) if key and key not in self._pictures}
         if len(self._pictures) + len(missing) > MOST_PICTURES:
@@ -486,6 +489,8 @@ class CirclesPainter:
 
     def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
         """Paint the circles that were found last."""
+        if len(self._found[0]) == 0:
+            return
         around, middle, keys = self._on_screen(placed, screen)
         looks = placed.scene.robots.shown_as.take(self._found[0]).tolist()
         thin = {look: QPen(_colour_of(look), 0.0) for look in {*looks}}
