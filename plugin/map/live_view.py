@@ -4,9 +4,9 @@ view as followed robots move."""
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
-from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ..control.fleet_controller import FleetController
@@ -15,7 +15,7 @@ from ..gateway_client.robot_states import RemovedRobots
 from ..gateway_client.state_words import part_in_words
 from ..layers.live_layers import ProjectWatch
 from ..layers.site_transform import SiteToMapTransform
-from ..ui.errors import MapTransformError
+from ..ui.errors import MapTransformError, Part, remove_all
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from .overlay.fleet_overlay import FleetOverlay, HoverTracker, card
@@ -60,10 +60,21 @@ class LiveView(QObject):
         self._by_layer = False
         self.layer_every = EVERY_SECOND
         """Number of updates after which the layer of robots is written again."""
-        self.overlay = FleetOverlay(desk.canvas, self._trails)
-        self.layer = RobotLayer(desk.project, desk.canvas, self)
-        self._project = ProjectWatch(desk.project, self)
-        self._hovering = HoverTracker(desk.canvas, self.overlay, self, self)
+        self._parts: list[Part] = []
+        """What :meth:`remove` takes out of QGIS, the last one first."""
+        try:
+            self._build()
+        except Exception:
+            # Nobody else knows this view yet.
+            remove_all(self._parts)
+            raise
+
+    def _build(self) -> None:
+        desk = self._desk
+        self.overlay: FleetOverlay = self._add(FleetOverlay(desk.canvas, self._trails))
+        self.layer: RobotLayer = self._add(RobotLayer(desk.project, desk.canvas, self))
+        self._project = self._add(ProjectWatch(desk.project, self))
+        self._hovering = self._add(HoverTracker(desk.canvas, self.overlay, self, self))
         self._frame = QTimer(self)
         self._frame.setSingleShot(True)
         self._frame.setInterval(FRAME_MS)
@@ -94,11 +105,11 @@ class LiveView(QObject):
         self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
         self._desk.project.transformContextChanged.disconnect(self._way_changed)
         self._desk.canvas.extentsChanged.disconnect(self._frame.start)
-        self._project.remove()
-        self._hovering.remove()
-        self.layer.remove()
-        if not sip.isdeleted(self.overlay):
-            self.overlay.remove()
+        remove_all(self._parts)
+
+    def _add(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
 
     def show_now(self) -> None:
         """Paint the desk's current state."""

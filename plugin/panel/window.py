@@ -122,10 +122,13 @@ class FleetWindow(QObject):
         self._reasons: set[str] = set()
         """Reasons why the link is down that the message bar has shown."""
         self._gateways = KnownGateways()
-        self.desk = FleetController(iface.mapCanvas(), QgsProject.instance(), self)
         self._parts: list[Part] = [Removal(self.deleteLater)]
         """Parts that :meth:`remove` removes, the last one first."""
+        self._ending: list[Part] = []
+        """What is removed before all of them: the desk, once there is one, as it reports to them."""
         try:
+            self.desk = FleetController(iface.mapCanvas(), QgsProject.instance(), self)
+            self._ending.append(Removal(self._shut_down))
             self._build(iface.mainWindow())
         except Exception:
             # Nobody else knows this window yet.
@@ -173,8 +176,7 @@ class FleetWindow(QObject):
 
     def remove(self) -> None:
         """Remove every part from the window and wait for the connection's threads."""
-        # Before every part that it reports to.
-        self._parts.append(Removal(self._shut_down))
+        self._parts += self._ending
         remove_all(self._parts)
 
     def _shut_down(self) -> None:

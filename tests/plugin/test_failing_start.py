@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.control.fleet_controller import FleetController
 from fleet_supervisor.plugin.locator import RobotLocator
+from fleet_supervisor.plugin.map.overlay.fleet_overlay import HoverTracker
 from fleet_supervisor.plugin.map.overlay.task_painter import QueueMarks
 from fleet_supervisor.plugin.map.tools.drawing_tools import ConeTool
 from fleet_supervisor.plugin.panel.queue import PauseActions
@@ -21,7 +22,9 @@ def state_of(iface):
     return {**left_behind(iface), "functions": len(QgsExpression.Functions())}
 
 
-@pytest.mark.parametrize("part", [PauseActions, WindowAlarms, RobotLocator, TourAction, MenuLetters])
+@pytest.mark.parametrize(
+    "part", [FleetController, HoverTracker, PauseActions, WindowAlarms, RobotLocator, TourAction, MenuLetters]
+)
 def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
     def fail(*_):
         raise RuntimeError("no such thing")

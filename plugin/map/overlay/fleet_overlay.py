@@ -124,7 +124,9 @@ class FleetOverlay(QgsMapCanvasItem):
         self.update()
 
     def remove(self) -> None:
-        """Remove the item from the canvas, which is restored."""
+        """Remove the item from the canvas, which is restored; the canvas may have deleted it before."""
+        if sip.isdeleted(self):
+            return
         self._canvas.viewport().setAttribute(_FILLED, False)
         self._canvas.scene().removeItem(self)
 
