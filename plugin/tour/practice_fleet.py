@@ -25,6 +25,9 @@ POSES = {"r1": "20,8,0", "r2": "48,84,0", "r3": "92,22,3.1416"}
 """Start position of each robot: x, y (metres) and theta (radians) in the sample site's frame."""
 LISTENING = re.compile(r"listening on (ws://127\.0\.0\.1:\d+)")
 PATIENCE_MS = 3000
+"""Time that programs are given to end by themselves."""
+KILLED_WITHIN_MS = 3000
+"""Time that a busy system is given to end a program that was killed."""
 WITH_QGIS = "--until-stdin-closes"
 """Makes a program end with its QGIS, even when that crashes."""
 
@@ -195,7 +198,7 @@ class _EndingProcesses(QObject):
             process.waitForFinished(max(0, round(1000 * (until - time.monotonic()))))
         self._kill()
         for process in self._processes:
-            process.waitForFinished(PATIENCE_MS)
+            process.waitForFinished(KILLED_WITHIN_MS)
         self._forget_ended()
 
     def _kill(self) -> None:
