@@ -230,7 +230,7 @@ CONFLICTS_SILENT_AFTER = 10.0
 """Seconds without a report after which conflicts are not known any more."""
 
 
-class StandingCone(NamedTuple):
+class ReportedCone(NamedTuple):
     """A cone that ``robot`` put down at x, y, metres in the site frame, ``deviation`` metres off its target.
 
     ``placed_at`` is seconds since 1970; ``placement`` is its number where a queue's task put it down.
@@ -368,7 +368,7 @@ class FleetState(QObject):
             self._is_collected = True
             self._timer.start(0)
 
-    def standing_cones(self) -> list[StandingCone]:
+    def standing_cones(self) -> list[ReportedCone]:
         """Return the cones that were put down and not collected, those that queues' tasks put down first.
 
         A cone that a single target put down stands at that target; the gateway keeps no account of it, so it
@@ -380,7 +380,7 @@ class FleetState(QObject):
             if cone.collected_at is None:
                 label = cone.label or cone.cone or ""
                 standing.append(
-                    StandingCone(
+                    ReportedCone(
                         cone.x, cone.y, cone.robot, label, cone.placed_at, cone.deviation, cone.placement
                     )
                 )
@@ -388,7 +388,7 @@ class FleetState(QObject):
             place = place_of(report)
             if report.command not in known and place is not None:
                 at = report.steps[-1].at if report.steps else None
-                standing.append(StandingCone(*place, report.robot, "", at, report.deviation))
+                standing.append(ReportedCone(*place, report.robot, "", at, report.deviation))
         return standing
 
     def robot(self, name: str) -> RobotView | None:

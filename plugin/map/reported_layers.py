@@ -38,7 +38,7 @@ from ...robot_bridge.core.messages.roads import ClosureReport, ConflictReport
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.command_cache import is_cone_put_down
-from ..gateway_client.fleet_state import FleetState, StandingCone
+from ..gateway_client.fleet_state import FleetState, ReportedCone
 from ..gateway_client.robot_states import STATES, RobotStates
 from ..gateway_client.state_words import ROBOT_STATES
 from ..layers import live_layers
@@ -495,7 +495,7 @@ class StandingCones(QObject):
         self._layer.show(list(map(_cone_row, self._state.standing_cones()[-MOST:])), self._state.site)
 
 
-def _cone_row(cone: StandingCone) -> live_layers.Row:
+def _cone_row(cone: ReportedCone) -> live_layers.Row:
     return [(cone.x, cone.y)], [cone.robot, cone.label, date_and_time(cone.placed_at), cone.deviation]
 
 
