@@ -39,6 +39,9 @@ SUPPORTED = {"2": "versions 2.0 and 2.1", "3": "versions 3.x"}
 """Supported versions by the major version in the link's settings."""
 LEVELS = ("FATAL", "CRITICAL", "URGENT", "WARNING")
 """Levels of errors, the worst first; 2.x has the first and the last."""
+_OPERATED = ("AUTOMATIC", "SEMIAUTOMATIC")
+_STARTING = "STARTUP"
+"""Operating mode of 3.0 of a vehicle that was switched on: nobody has taken it over."""
 _RENAMED = {
     "mobileRobotPosition": "agvPosition",
     "localized": "positionInitialized",
@@ -207,6 +210,26 @@ class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
     def has_active_order(self) -> bool:
         """Whether any part of its order is left; instant actions do not count."""
         return bool(self.node_states or self.edge_states)
+
+    @property
+    def is_operated(self) -> bool:
+        """Whether its operating mode lets a fleet control drive it."""
+        return self.operating_mode in _OPERATED
+
+    @property
+    def blocked_by(self) -> str | None:
+        """Its operating mode or its own emergency stop as the reason why it drives no order, or None."""
+        if not self.is_operated:
+            return f"the vehicle is in operating mode {self.operating_mode[:40]}"
+        if self.safety_state.e_stop != "NONE":
+            return f"the vehicle's own emergency stop is active ({self.safety_state.e_stop[:40]})"
+        return None
+
+    @property
+    def taken_over_by(self) -> str | None:
+        """As ``blocked_by``, but None while it only starts up: then nobody at the vehicle ended its order."""
+        starting = self.operating_mode == _STARTING and self.safety_state.e_stop == "NONE"
+        return None if starting else self.blocked_by
 
     @property
     def is_held(self) -> bool:

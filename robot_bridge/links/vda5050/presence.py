@@ -59,7 +59,6 @@ class SerialWatch:
 
 # --- Presence of a vehicle: its connection, its last state, its position in the site frame
 
-_OPERATED = ("AUTOMATIC", "SEMIAUTOMATIC")
 ANSWERS_WITHIN = 5.0
 """seconds after which a vehicle that does not answer a state request counts as gone."""
 ALARMING = LEVELS[:-1]
@@ -174,11 +173,7 @@ class VehiclePresence:
             return f"the vehicle is not connected ({self._connection or 'never heard'})"
         if state is None:
             return "the vehicle has published no state yet"
-        if state.operating_mode not in _OPERATED:
-            return f"the vehicle is in operating mode {state.operating_mode[:40]}"
-        if state.safety_state.e_stop != "NONE":
-            return f"the vehicle's own emergency stop is active ({state.safety_state.e_stop[:40]})"
-        return self._missing_place()
+        return state.blocked_by or self._missing_place()
 
     def alarm(self, now: float) -> str | None:
         """Return the alarms for operators, worst first, or None.
@@ -203,7 +198,7 @@ class VehiclePresence:
         if state is None:
             return []
         parts += self._protection(state)
-        if state.operating_mode not in _OPERATED:
+        if not state.is_operated:
             parts.append(f"operating mode {state.operating_mode[:40]}")
         if state.paused:
             parts.append("paused")

@@ -293,6 +293,7 @@ _ORDER_FAULTS = (
 """Prefixes of the error types for refused orders in VDA 5050, in lower case; the second row is of 3.0."""
 _UNREACHABLE = "nodeunreachable"
 """Error type of 3.0 for an order that a vehicle has and will not drive to its end."""
+_LOST_BY_HAND = "{}, and its order went with that: send it again when the vehicle may drive"
 
 
 class Progress(Enum):
@@ -327,12 +328,19 @@ class VehicleTask:
     resumed: int = 0
     is_confirmed: bool = True
     """false while it is unknown whether a task from before the adapter's start must still be driven."""
+    _taken_over: str | None = None
+    """Why the vehicle was not driven by its order in the last state that showed the order."""
     _known_faults: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         target = self.message
         if not self.path:
             self.path = target.points if isinstance(target, SetPath) else [(target.x, target.y)]
+
+    @property
+    def is_on_its_way(self) -> bool:
+        """Whether its order was sent and not shown yet."""
+        return self.plan is not None and self.first_sent_at is not None and not self.accepted
 
     def confirm(self, now: float) -> None:
         """Record that the gateway still waits for it."""
@@ -373,11 +381,13 @@ class VehicleTask:
     def evaluate(self, state: State) -> tuple[Progress, str]:
         """Return the progress of the task by a state, with the vehicle's reason for a failure."""
         plan = self.plan
+        if self.resumed and not self.accepted and (why := state.taken_over_by) is not None:
+            return Progress.ENDED, _LOST_BY_HAND.format(why)
         if plan is None:
             return Progress.UNSEEN, ""
         if state.order_id != plan.order_id:
             return self._judge_unshown(state, plan)
-        self.accepted = True
+        self.accepted, self._taken_over = True, state.taken_over_by
         if (fault := self._update_fault(state, plan) or _unreachable(state)) is not None:
             return Progress.REFUSED, fault.summary
         self.passed = _passed(state)
@@ -386,7 +396,7 @@ class VehicleTask:
         if self.passed >= plan.last:
             ended = all(action.has_ended for action in state.action_states)
             return (Progress.REACHED if ended else Progress.UNDER_WAY), ""
-        if self.passed >= plan.base_end:
+        if self.passed >= plan.base_end and self._taken_over is None:
             return Progress.UNDER_WAY, ""
         return Progress.ENDED, _reasons(state, f"the vehicle ended its order at node {self.passed}")
 
@@ -410,6 +420,9 @@ class VehicleTask:
                     Progress.FOREIGN,
                     f"another fleet control gave it order {state.order_id[:60]!r}",
                 )
+            # One that was taken over by hand must not drive off by itself when it is handed back.
+            if (why := state.taken_over_by or self._taken_over) is not None:
+                return Progress.ENDED, _LOST_BY_HAND.format(why)
             return Progress.FORGOTTEN, ""
         if self.first_sent_at is not None and (fault := self._refusal(state, plan)) is not None:
             return Progress.REFUSED, fault.summary

@@ -251,7 +251,8 @@ class VehicleController:
             self._report(Stopped())
         elif progress in (Progress.REFUSED, Progress.ENDED, Progress.FOREIGN):
             ledger.refuse_task(reason)
-            if progress is Progress.REFUSED and state.has_active_order:
+            is_on_its_way = progress is Progress.ENDED and task.is_on_its_way
+            if is_on_its_way or (progress is Progress.REFUSED and state.has_active_order):
                 self._begin_stop(now)
         elif progress is Progress.FORGOTTEN and task.resumed >= MOST_RESUMED:
             ledger.refuse_task("the vehicle lost its order again and again")

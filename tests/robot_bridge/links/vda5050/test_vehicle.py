@@ -276,6 +276,83 @@ def test_a_vehicle_that_forgot_its_order_is_given_what_is_left(bench):
     assert bench.settled == []
 
 
+NO_ORDER = {"orderId": "", "nodeStates": [], "edgeStates": [], "lastNodeSequenceId": 0, "driving": False}
+RELEASED = {"operatingMode": "AUTOMATIC", "safetyState": {"eStop": "NONE", "fieldViolation": False}}
+BY_HAND = pytest.mark.parametrize(
+    ("taken_over", "words"),
+    [
+        ({"operatingMode": "MANUAL"}, "operating mode MANUAL"),
+        (
+            {"safetyState": {"eStop": "MANUAL", "fieldViolation": False}},
+            "own emergency stop is active",
+        ),
+    ],
+)
+
+
+@BY_HAND
+@pytest.mark.parametrize("order_goes", ["with it", "when it is handed back", "before it"])
+def test_a_vehicle_that_lost_its_order_by_hand_does_not_drive_off_by_itself(
+    bench, taken_over, words, order_goes
+):
+    bench.tell(TARGET, 7)
+    bench.accept(bench.orders[-1])
+    bench.clear()
+    if order_goes == "before it":
+        bench.show(**NO_ORDER)
+    bench.show(**taken_over, **(NO_ORDER if order_goes == "with it" else {}))
+    bench.live(5)
+    sent = len(bench.orders)
+    bench.show(**RELEASED, **NO_ORDER)
+    bench.live(10)
+    assert len(bench.orders) == sent
+    assert [one.command_id for one in bench.settled] == [7]
+    assert words in bench.settled[0].reason and "send it again" in bench.settled[0].reason
+    # An order that was on its way to it is not driven either.
+    assert order_goes != "before it" or "cancelOrder" in bench.actions
+
+
+@BY_HAND
+def test_a_vehicle_that_dropped_its_nodes_by_hand_at_the_end_of_its_base_is_released_no_more(
+    bench, taken_over, words
+):
+    bench.tell(LONG, 7)
+    bench.controller.set_admitted(False, bench.now)
+    run_to(bench, 1)
+    bench.show(nodeStates=[], edgeStates=[], driving=False, **taken_over)
+    bench.admit()
+    bench.clear()
+    bench.show(**RELEASED)
+    bench.live(5)
+    assert bench.orders == []
+
+
+@BY_HAND
+def test_a_vehicle_that_kept_its_order_by_hand_and_is_started_again_later_goes_on(bench, taken_over, words):
+    bench.tell(TARGET, 7)
+    bench.accept(bench.orders[-1])
+    bench.clear()
+    bench.show(**taken_over)
+    bench.show(**RELEASED)
+    bench.show(**NO_ORDER)
+    bench.wait(0.25)
+    assert bench.settled == [] and len(bench.orders) == 1
+
+
+def test_a_vehicle_that_starts_up_without_its_order_goes_on():
+    bench = Bench(version="3.0.0")
+    bench.connect()
+    bench.tell(TARGET, 7)
+    bench.accept(bench.orders[-1])
+    bench.clear()
+    bench.show(**NO_ORDER, operatingMode="STARTUP")
+    bench.live(3)
+    assert bench.orders == [] and bench.settled == []
+    bench.show(operatingMode="AUTOMATIC")
+    bench.wait(0.25)
+    assert len(bench.orders) == 1
+
+
 def test_a_vehicle_that_forgets_its_order_again_and_again_is_given_it_no_more(bench):
     bench.tell(LONG, 7)
     for _ in range(MOST_RESUMED + 1):
