@@ -14,6 +14,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType, field
 
 from ...core.errors import BridgeError
 from ...core.json_decoder import DecodingError, JsonBounds, decode_json
+from ...core.messages.base import SPEED
 
 # --- The exception family of the VDA 5050 adapter ---
 
@@ -99,9 +100,9 @@ class Velocity(Struct, frozen=True, rename="camel", kw_only=True):
 
     @property
     def speed(self) -> float:
-        """m/s, below 0 backwards."""
+        """m/s, below 0 backwards; at most what a position may have."""
         forwards, sideways = self.vx or 0.0, self.vy or 0.0
-        return math.copysign(math.hypot(forwards, sideways), forwards or 1.0)
+        return math.copysign(min(SPEED[1], math.hypot(forwards, sideways)), forwards or 1.0)
 
 
 class NodeState(Struct, frozen=True, rename="camel", kw_only=True):

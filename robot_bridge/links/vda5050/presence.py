@@ -92,6 +92,8 @@ class VehiclePresence:
         self.factsheet: Factsheet | None = None
         self.position: Position | None = None
         self.pose: SendPos | None = None
+        """None also while the vehicle's place is unknown: its last one is not reported as the present one."""
+        self._states_have_position = False
         self.version = version
         self._placed_at = -math.inf
         self._misplaced: str | None = None
@@ -113,6 +115,9 @@ class VehiclePresence:
         self._serials.note_state(message.header_id, now)
         self.state, self.state_at, self.version = message, now, message.version
         self._connection, self._received_at = "ONLINE", now
+        if message.agv_position is None and self._states_have_position:
+            self.position = self.pose = None
+        self._states_have_position = message.agv_position is not None
         self._place(message.agv_position, message.velocity, message.sent_at, now)
 
     def note_visualization(self, message: Visualization, now: float) -> None:
@@ -178,11 +183,13 @@ class VehiclePresence:
     def alarm(self, now: float) -> str | None:
         """Return the alarms for operators, worst first, or None.
 
-        These are its safety state, errors that need a person, and a serial number used by two vehicles.
+        These are its safety state, errors that need a person, an unknown place, and a serial number used by
+        two vehicles.
         """
         state, parts = self.state, [self.serial_complaint(now)]
         if state is not None and self.is_there(now):
             parts += self._protection(state)
+            parts.append(self._missing_place())
             parts += [self._words(one) for one in state.errors if one.error_level in ALARMING][:MOST_FAULTS]
         text = "; ".join(part for part in parts if part)
         return text or None
@@ -238,8 +245,8 @@ class VehiclePresence:
     ) -> None:
         if position is None:
             return
-        before, self.position = self.position, position
-        frame = self.frame()
+        before, self.position = None if self.pose is None else self.position, position
+        frame, self.pose = self.frame(), None
         if frame is None or not position.position_initialized:
             return
         v = self._speed(before, position, velocity, now)

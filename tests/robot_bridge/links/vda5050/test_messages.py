@@ -202,9 +202,10 @@ def test_a_place_beyond_all_bounds_ends_nothing():
     bench = Bench()
     bench.connect()
     bench.state["agvPosition"]["x"] = 9e8
+    bench.clear()
     bench.show()
-    assert bench.saying(SendPos)[-1].x == 100.0
-    assert "its position has no place on the site: x is" in bench.saying(SendPos)[-1].status
+    assert bench.saying(SendPos) == []
+    assert "its position has no place on the site: x is" in bench.controller.alarm(bench.now)
     bench.state["agvPosition"]["x"] = 1.0
     bench.show()
     assert bench.sent[-1].x == 101.0

@@ -301,6 +301,7 @@ def test_a_vehicle_that_lost_its_order_by_hand_does_not_drive_off_by_itself(
     if order_goes == "before it":
         bench.show(**NO_ORDER)
     bench.show(**taken_over, **(NO_ORDER if order_goes == "with it" else {}))
+    assert bool(bench.settled) == (order_goes != "when it is handed back")
     bench.live(5)
     sent = len(bench.orders)
     bench.show(**RELEASED, **NO_ORDER)
@@ -440,14 +441,6 @@ def test_the_order_of_another_fleet_control_is_said_and_fails_ours(bench):
     [
         ({"operatingMode": "MANUAL"}, "operating mode MANUAL"),
         ({"safetyState": {"eStop": "MANUAL", "fieldViolation": False}}, "emergency stop"),
-        (
-            {"agvPosition": {"x": 0, "y": 0, "theta": 0, "mapId": "attic", "positionInitialized": True}},
-            "map 'attic' is not in the settings",
-        ),
-        (
-            {"agvPosition": {"x": 0, "y": 0, "theta": 0, "mapId": "hall", "positionInitialized": False}},
-            "does not know where it is",
-        ),
     ],
 )
 def test_a_vehicle_that_cannot_drive_refuses_with_the_reason(bench, changes, words):
@@ -456,6 +449,58 @@ def test_a_vehicle_that_cannot_drive_refuses_with_the_reason(bench, changes, wor
     bench.tell(TARGET, 7)
     bench.live(9)
     assert words in bench.settled[0].reason and bench.orders == []
+
+
+@pytest.mark.parametrize("topic", ["state", "visualization"])
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"mapId": "attic"}, "map 'attic' is not in the settings"),
+        ({"positionInitialized": False}, "does not know where it is"),
+        ({"x": 9e8}, "its position has no place on the site"),
+    ],
+)
+def test_a_vehicle_without_a_place_is_alive_and_not_where_it_was(bench, changes, words, topic):
+    bench.show(driving=True)
+    here = dict(bench.state["agvPosition"])
+    bench.clear()
+    lost = here | changes
+    bench.hear("visualization", {"agvPosition": lost})
+    bench.state["agvPosition"] = lost
+    for _ in range(2):
+        if topic == "state":
+            bench.show(driving=False)
+        bench.wait(1)
+    bench.admit()
+    assert bench.saying(SendPos) == [] and bench.saying(Alive)
+    assert words in bench.controller.status(bench.now) and words in bench.controller.alarm(bench.now)
+    bench.tell(TARGET, 7)
+    bench.live(9)
+    assert words in bench.settled[0].reason and bench.orders == []
+
+    bench.state["agvPosition"] = here | {"x": 3.0}
+    bench.show()
+    assert bench.saying(SendPos)[-1].x == 103.0 and bench.controller.alarm(bench.now) is None
+
+
+def test_a_vehicle_whose_states_have_no_position_any_more_is_not_where_it_was(bench):
+    del bench.state["agvPosition"]
+    bench.clear()
+    bench.live(2)
+    assert bench.saying(SendPos) == [] and bench.saying(Alive)
+    assert bench.controller.alarm(bench.now) == "the vehicle says no position"
+    # One that says its position in visualization alone is where that was.
+    at = {"x": 3.0, "y": 0.0, "theta": 0.0, "mapId": "hall", "positionInitialized": True}
+    bench.hear("visualization", {"agvPosition": at})
+    bench.clear()
+    bench.live(2)
+    assert bench.saying(SendPos)[-1].x == 103.0 and bench.controller.alarm(bench.now) is None
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_speed_that_is_none_does_not_withhold_the_position(bench, sign):
+    bench.show(driving=True, velocity={"vx": sign * 100.0, "vy": 100.0})
+    assert bench.saying(SendPos)[-1].v == sign * 100.0 and bench.controller.status(bench.now) is None
 
 
 def test_a_vehicle_that_is_gone_refuses_and_is_not_alive(bench):
@@ -602,6 +647,13 @@ def test_the_speed_of_a_vehicle_that_says_none_is_measured(bench):
     bench.state["agvPosition"]["x"] += 10.0
     bench.show()
     assert bench.saying(SendPos)[-1].v == pytest.approx(0.5)
+    # Where it was while it did not know that is no place that it has come from.
+    bench.state["agvPosition"].update(x=1000.0, positionInitialized=False)
+    bench.show()
+    bench.now += 0.5
+    bench.state["agvPosition"].update(x=12.0, positionInitialized=True)
+    bench.show()
+    assert bench.saying(SendPos)[-1].v == 0.0
 
 
 def test_a_pause_that_holds_is_not_asked_for_again_unless_it_may_be_lifted(bench):
