@@ -15,8 +15,11 @@ PathDeclaration = Literal["asks", "cones", "asks and cones"]
 """What a robot declared in Ready: ``asks_path``, ``path_cones``, or both."""
 
 
-Ability = Literal["targets", "paths", "start", "cones", "map", "images"]
-"""What a robot can do: drive to targets, along paths, start elsewhere, place cones, use maps, send images."""
+Ability = Literal["targets", "paths", "start", "cones", "map", "images", "stop"]
+"""What a robot can do: drive to targets, along paths, start elsewhere, place cones, use maps, send images.
+
+With any of them it can be stopped; ``stop`` is for one that can do nothing else.
+"""
 
 
 class RobotState(str, Enum):

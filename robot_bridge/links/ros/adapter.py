@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -14,6 +14,7 @@ from ...core.json_decoder import DecodingError, decode_json
 from ...core.messages.base import MessageError, check_robot_name
 from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError, LinkError
+from .messages import ACTIONS
 from .robot import RosRobot
 from .settings import RobotSettings
 
@@ -64,6 +65,8 @@ class RobotNotes:
 # --- Common base of ROS adapters: discovers robots, controls each separately, reports them together ---
 
 MOST_ROBOTS = 5000
+FAULT_LASTS = 5.0
+"""seconds without another unforeseen error after which the alarm about a robot ends."""
 
 Network = TypeVar("Network")
 Make = Callable[[str], RosRobot[Network]]
@@ -82,7 +85,11 @@ class RosAdapter(Adapter, Generic[Network]):
         self._robots: dict[str, RosRobot[Network]] = {}
         self._servers: dict[str, str] = notes.read(_server) if keeps_servers else {}
         self._refused: set[str] = set()
-        self._failed: set[str] = set()
+        self._failed: dict[tuple[str, str], float] = {}
+        """When each step for a robot last failed; until it succeeds again."""
+        self._met_servers: Set[str] = frozenset()
+        servers = (*ACTIONS.values(), "stop")
+        self._server_patterns = [self._patterns[one] for one in servers if one in self._patterns]
 
     async def command(self, command: Command) -> None:
         """Have a robot accept a command."""
@@ -103,27 +110,50 @@ class RosAdapter(Adapter, Generic[Network]):
         if robot in self._robots:
             self._robots[robot].admitted()
 
-    def _find(self, topics: list[str], network: Network, make: Make[Network]) -> None:
-        """Create robots whose position topic is one of ``topics``, and connect all to the present network."""
+    def _find(
+        self, topics: list[str], servers: Set[str], network: Network, make: Make[Network], now: float
+    ) -> None:
+        """Create robots by their position topics and servers, and connect all to the present network.
+
+        A robot found by an action server or stop service alone says no position, and has to be stopped, too.
+        """
         if not self._named:
-            for topic in topics:
-                name = self._patterns["position"].robot_of(topic)
+            found = [self._patterns["position"].robot_of(topic) for topic in topics]
+            for server in servers - self._met_servers:
+                found += [pattern.robot_of(server) for pattern in self._server_patterns]
+            self._met_servers = servers
+            for name in found:
                 if name is not None and name not in self._robots and name not in self._refused:
                     self._meet(name, make)
         for robot in self._robots.values():
-            self._lead(robot, partial(robot.connect, network))
+            self._lead(robot, "connect", partial(robot.connect, network), now)
         self._note_servers()
 
-    def _lead(self, robot: RosRobot[Network], work: Callable[[], None]) -> None:
-        """Do some work for a robot; an unforeseen error affects that robot alone, and is logged once."""
+    def _step(self, now: float) -> None:
+        """Have each robot process what it received and continue."""
+        for robot in self._robots.values():
+            self._lead(robot, "receive", partial(robot.receive, now), now, FAULT_LASTS)
+            self._lead(robot, "act", partial(robot.act, now), now, FAULT_LASTS)
+
+    def _lead(
+        self, robot: RosRobot[Network], step: str, work: Callable[[], None], now: float, lasts: float = 0.0
+    ) -> None:
+        """Do a step for a robot; an unforeseen error affects that step alone, and is logged once.
+
+        It is an alarm until the step has succeeded for ``lasts`` seconds.
+        """
+        key = robot.name, step
         try:
             work()
         except LinkError:
             raise
         except Exception:
-            if robot.name not in self._failed:
-                self._failed.add(robot.name)
+            if key not in self._failed:
                 log.exception("robot %s: the link fails here, and goes on with the others", robot.name)
+            self._failed[key] = now
+        else:
+            if now - self._failed.get(key, now) >= lasts:
+                self._failed.pop(key, None)
 
     def _meet(self, name: str, make: Make[Network]) -> None:
         try:
@@ -142,7 +172,10 @@ class RosAdapter(Adapter, Generic[Network]):
         unreached = self._network_faults()
         faults = [*unreached]
         faults += [f"{robot.name}: {text}" for robot in self._robots.values() for text in robot.faults]
-        faults += [f"{name}: the link failed; its log says more" for name in sorted(self._failed)]
+        faults += [
+            f"{name}: the link failed; its log says more"
+            for name in sorted({name for name, _ in self._failed})
+        ]
         faults += [] if self._notes.fault is None else [self._notes.fault]
         counts = {"found": float(len(self._robots))}
         link.report(ok=not faults, text=summary(faults), counts=counts, reached=not unreached)

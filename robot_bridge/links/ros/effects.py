@@ -39,6 +39,11 @@ class Abilities:
         """The actions that goals may be sent to."""
         return self.actions - self.foreign
 
+    @property
+    def is_stoppable(self) -> bool:
+        """Whether there is anything that a stop can be sent to."""
+        return bool(self.actions) or self.velocity or self.stop_service or self.goal_topic
+
 
 @dataclass(frozen=True)
 class Answered:

@@ -182,7 +182,7 @@ class Camera:
 log = logging.getLogger(__name__)
 
 ABLE_WITHIN = 2.0
-"""seconds from its first position until a robot is announced: its action servers are found by then."""
+"""seconds from a robot's first position or server until it is announced: its other servers are found then."""
 ABLE_EVERY = 1.0
 """seconds between checks of an announced robot's abilities."""
 ALIVE_EVERY = 1.0
@@ -192,7 +192,7 @@ IDLE_EVERY = 0.1
 
 
 class RosRobot(Generic[Network]):
-    """Driven by calls of :meth:`step`; commanded by :meth:`command` and :meth:`stop`."""
+    """Driven by calls of :meth:`receive` and :meth:`act`; commanded by :meth:`command` and :meth:`stop`."""
 
     def __init__(
         self,
@@ -225,7 +225,7 @@ class RosRobot(Generic[Network]):
         self._stops: list[asyncio.Future[None]] = []
         self._sent: dict[int, SendGoal] = {}
         self._act_at = 0.0
-        self._seen_at: float | None = None
+        self._met_at: float | None = None
         self._received_at = 0.0
         self._declared: tuple[Ability, ...] | None = None
         self._introduce_at = 0.0
@@ -270,24 +270,32 @@ class RosRobot(Generic[Network]):
                 # A held order never reached it: that would only be refused, and sent again.
                 self._link.restarted(self.name)
 
-    def step(self, now: float) -> None:
-        """Process received messages and continue; ``now`` is a steady clock's."""
+    def receive(self, now: float) -> None:
+        """Process received topics; ``now`` is a steady clock's."""
         position = self._hearing.poll()
         if position is not None:
-            self._seen_at = now if self._seen_at is None else self._seen_at
             self._received_at = now
             self._last = position
             self._tasks.seen(position.v if not isinstance(position, SendGPS) else None)
-        self._introduce(now)
-        if self._camera is not None and self._declared is not None:
-            self._camera.step(now)
         if self._declared is not None and position is not None:
             self._link.position(self.name, replace(position, status=self._status()))
+        if self._camera is not None and self._declared is not None:
+            self._camera.step(now)
+
+    def act(self, now: float) -> None:
+        """Process its servers' messages, continue its task or stop, and announce it.
+
+        Apart from :meth:`receive`: an error there must not hold up a stop.
+        """
         # A robot not announced has no commands yet, and outcomes of earlier ones could not be reported.
         if self._declared is not None and (self._tasks.is_busy or now >= self._act_at):
             self._act_at = now + IDLE_EVERY
-            self._run(self._acting.poll(self._tasks, now, self._fault))
-            self._run(self._tasks.step(self._acting.abilities, now))
+            try:
+                self._run(self._acting.poll(self._tasks, now, self._fault))
+            finally:
+                # A stop is repeated whatever its servers say.
+                self._run(self._tasks.step(self._acting.abilities, now))
+        self._introduce(now)
 
     def admitted(self) -> None:
         """Report its position: the gateway has admitted it."""
@@ -385,15 +393,20 @@ class RosRobot(Generic[Network]):
     def _introduce(self, now: float) -> None:
         """Announce the robot to the gateway once its abilities are known, and again when it gains some.
 
+        One whose position is silent is announced, too, if anything can stop it: no stop reaches it otherwise.
         Lost abilities are kept: commands are refused with the reason, and a restarted server is soon back.
         """
-        if self._seen_at is None or now < self._introduce_at:
+        if now < self._introduce_at:
             return
         self._introduce_at = now + (IDLE_EVERY if self._declared is None else ABLE_EVERY)
         can = self._acting.abilities
+        if self._met_at is None:
+            if self._last is None and not can.is_stoppable:
+                return
+            self._met_at = now
         abilities = self._abilities(can)
         whole = {"targets", "paths"} <= set(abilities)
-        if self._declared is None and now - self._seen_at < ABLE_WITHIN and not whole:
+        if self._declared is None and now - self._met_at < ABLE_WITHIN and not whole:
             return
         declared = self._declared or ()
         both = (*declared, *(one for one in abilities if one not in declared))
@@ -419,7 +432,8 @@ class RosRobot(Generic[Network]):
             "map": settings.maps,
             "images": settings.topics.image is not None,
         }
-        return [cast("Ability", name) for name, there in offered.items() if there]
+        abilities = [cast("Ability", name) for name, there in offered.items() if there]
+        return abilities or (["stop"] if can.is_stoppable else [])
 
     @property
     def _here(self) -> Pose | None:
@@ -436,8 +450,15 @@ class RosRobot(Generic[Network]):
             log.warning("robot %s: %s", self.name, text)
 
     def _run(self, effects: list[Effect]) -> None:
+        """Carry out effects; an unforeseen error in one is raised after the others, which may be a stop's."""
+        errors = []
         for effect in effects:
-            self._carry_out(effect)
+            try:
+                self._carry_out(effect)
+            except Exception as error:
+                errors.append(error)
+        if errors:
+            raise errors[0]
 
     def _carry_out(self, effect: Effect) -> None:
         match effect:

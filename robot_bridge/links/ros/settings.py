@@ -103,7 +103,7 @@ class TopicSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Settings of the robots. Without ``robots``, all with a position topic are controlled.
+    """Settings of the robots. Without ``robots``, all with a position topic or a server are controlled.
 
     A path goes to the first of ``path_actions`` that the robot offers. An image is an observation every
     ``image_every_s`` seconds at most. A target or a path waits ``hold_s`` seconds for an action server or a

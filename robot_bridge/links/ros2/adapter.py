@@ -31,6 +31,7 @@ from .dds import DdsSettings, Endpoint, Participant, Quality, Range, RawReader, 
 from .interfaces import (
     Interfaces,
     action_names,
+    server_from_dds,
     service_names,
     topic_from_dds,
     topic_to_dds,
@@ -477,9 +478,10 @@ class Ros2Adapter(RosAdapter[Offers]):
                 meet_at, changed = now + MEET_EVERY, False
                 offers: Offers = by_topic(participant.endpoints)
                 offered = [topic_from_dds(topic) for topic, wants in offers if not wants]
-                self._find([topic for topic in offered if topic is not None], offers, make)
-            for robot in self._robots.values():
-                self._lead(robot, partial(robot.step, now))
+                servers = {server_from_dds(topic) for topic, wants in offers if wants}
+                topics = [topic for topic in offered if topic is not None]
+                self._find(topics, {one for one in servers if one is not None}, offers, make, now)
+            self._step(now)
             self._report(link)
             await asyncio.sleep(max(0.001, EVERY - (time.monotonic() - now)))
 

@@ -56,6 +56,13 @@ def topic_from_dds(name: str) -> str | None:
     return ros if is_topic(ros) else None
 
 
+def server_from_dds(name: str) -> str | None:
+    """Return the ROS service or action whose requests a DDS topic carries, None for others."""
+    if not (name.startswith("rq/") and name.endswith("Request")):
+        return None
+    return name[2 : -len("Request")].removesuffix("/_action/send_goal")
+
+
 def type_to_dds(name: str) -> str:
     """Return the DDS name of a type such as ``nav_msgs/msg/Odometry``; raises RosNameError."""
     found = _TYPE.fullmatch(name)

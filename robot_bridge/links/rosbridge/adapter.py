@@ -382,11 +382,11 @@ class RosbridgeAdapter(RosAdapter[Graph]):
             if self._watch.looks != looks:
                 looks = self._watch.looks
                 known = len(self._robots)
-                self._find(list(self._watch.graph.topics), self._watch.graph, make)
+                graph = self._watch.graph
+                self._find(list(graph.topics), graph.actions | graph.services, graph, make, now)
                 if len(self._robots) > known:
                     self._watch.request_read()
-            for robot in self._robots.values():
-                self._lead(robot, partial(robot.step, now))
+            self._step(now)
             self._report(link)
             await asyncio.sleep(max(0.001, EVERY - (time.monotonic() - now)))
 

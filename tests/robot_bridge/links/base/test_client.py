@@ -254,7 +254,7 @@ async def test_an_emergency_stop_is_told_as_one_and_what_is_only_seen_answers_by
         port = server.sockets[0].getsockname()[1]
         link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
         try:
-            for name, can in (("phone", ()), ("r1", ("targets",))):
+            for name, can in (("phone", ()), ("r1", ("stop",))):
                 await asyncio.to_thread(link.do, "add", name, can)
             async with asyncio.timeout(20):
                 while {"phone/3", "r1/9"} - {reply["id"] for reply in gateway.replies if "result" in reply}:

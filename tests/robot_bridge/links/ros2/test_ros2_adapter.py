@@ -46,8 +46,8 @@ def adapter(tmp_path):
 def test_what_nobody_foresaw_concerns_one_robot_and_is_logged_once(adapter, caplog):
     robot, link = Robot("r1", KeyError("odd")), Link()
     with caplog.at_level(logging.ERROR):
-        adapter._lead(robot, robot.fail)
-        adapter._lead(robot, robot.fail)
+        adapter._lead(robot, "act", robot.fail, 1.0)
+        adapter._lead(robot, "act", robot.fail, 2.0)
     adapter._report(link)
     assert len(caplog.records) == 1
     assert not link.said["ok"] and link.said["text"] == "r1: the link failed; its log says more"
@@ -57,7 +57,7 @@ def test_what_nobody_foresaw_concerns_one_robot_and_is_logged_once(adapter, capl
 def test_what_a_person_has_to_put_right_ends_the_process(adapter):
     robot = Robot("r1", LinkError("memory cannot be written"))
     with pytest.raises(LinkError):
-        adapter._lead(robot, robot.fail)
+        adapter._lead(robot, "act", robot.fail, 1.0)
 
 
 def test_the_next_process_knows_who_had_a_robots_tasks(adapter, tmp_path):

@@ -8,6 +8,7 @@ from robot_bridge.links.ros.errors import RosNameError
 from robot_bridge.links.ros.settings import TopicPattern
 from robot_bridge.links.ros2.interfaces import (
     action_names,
+    server_from_dds,
     service_names,
     topic_from_dds,
     topic_to_dds,
@@ -63,3 +64,17 @@ def test_a_pattern_that_can_be_no_topic_is_refused(pattern):
 def test_a_robot_whose_name_cannot_stand_in_a_topic_is_refused():
     with pytest.raises(RosNameError, match="'/agv-1/odom'"):
         TopicPattern("/{robot}/odom").topic_of("agv-1")
+
+
+@pytest.mark.parametrize(
+    ("topic", "server"),
+    [
+        ("rq/r1/stopRequest", "/r1/stop"),
+        ("rq/r1/navigate_to_pose/_action/send_goalRequest", "/r1/navigate_to_pose"),
+        ("rq/r1/navigate_to_pose/_action/get_resultRequest", "/r1/navigate_to_pose/_action/get_result"),
+        ("rr/r1/stopReply", None),
+        ("rt/r1/odom", None),
+    ],
+)
+def test_a_server_is_known_by_the_topic_of_its_requests(topic, server):
+    assert server_from_dds(topic) == server
