@@ -17,7 +17,7 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.messages.base import check_robot_name
-from ..core.messages.robots import SetObject
+from ..core.messages.robots import SendPos, SetObject
 from ..core.reconnection import ClientCredentials
 from ..core.systemd import call_at_end_of_input
 from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings, RequestSink, RobotMemory
@@ -205,8 +205,11 @@ def _localised(
 def _pose(text: str) -> tuple[float, float, float]:
     try:
         x, y, theta = (float(part) for part in text.split(","))
-    except ValueError:
-        raise BridgeError(f"pose {text!r} cannot be read; write X,Y,THETA such as 10,20,1.57") from None
+        SendPos(x, y, theta, 0.0)
+    except ValueError as error:
+        raise BridgeError(
+            f"pose {text!r} cannot be read ({error}); write X,Y,THETA such as 10,20,1.57"
+        ) from None
     return x, y, theta
 
 

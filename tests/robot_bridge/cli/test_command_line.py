@@ -1,5 +1,6 @@
 """The command line names every command without importing it, and imports the one that is asked for."""
 
+import importlib
 import pkgutil
 import re
 import subprocess
@@ -12,6 +13,7 @@ import typer
 
 from robot_bridge import cli
 from robot_bridge.__main__ import COMMANDS, command_line
+from robot_bridge.core.errors import BridgeError
 
 HEAVY = {"sqlalchemy", "websockets", "numpy", "robot_bridge.gateway.app", "robot_bridge.core.messages"}
 
@@ -96,3 +98,21 @@ def help_texts(command):
     yield from (parameter.help or "" for parameter in command.params)
     for inner in getattr(command, "commands", {}).values():
         yield from help_texts(inner)
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        ("nan,0,0", "x is nan; give a number from"),
+        ("0,-inf,0", "y is -inf"),
+        ("0,0,inf", "theta is inf"),
+        ("1e9,0,0", "x is 1000000000.0"),
+        ("1,2", "not enough values"),
+        ("1,2,east", "could not convert string to float: 'east'"),
+    ],
+)
+def test_a_pose_that_is_none_starts_no_robot(pose, words):
+    robot_commands = importlib.import_module("robot_bridge.cli.robot")
+    with pytest.raises(BridgeError, match=re.escape(f"pose {pose!r} cannot be read (")) as caught:
+        robot_commands._pose(pose)
+    assert words in str(caught.value) and "write X,Y,THETA such as 10,20,1.57" in str(caught.value)
