@@ -175,6 +175,10 @@ class Adapter(ABC):
         :raises CommandRefusedError: when the robot's side does not answer, or refuses.
         """
 
+    def stop_unannounced(self) -> None:
+        """Stop the robots that it has met and not announced: an emergency stop came for all of the link."""
+        return
+
     def playback(self, change: Playback) -> PlaybackReport:
         """Change the playback of a recording, and return its state.
 

@@ -271,6 +271,8 @@ class LinkClient:
                     # An error with one robot must not keep the stop from others.
                     with log_and_continue(log, f"stopping robot {name!r}"):
                         self._stop(name, f"{name}/{params.get('call')}", emergency=True)
+            with log_and_continue(log, "stopping robots that the gateway does not know yet"):
+                self._adapter.stop_unannounced()
         elif robot in self._robots:
             self._receive_answer(robot, call, params)
         elif call.id is not None:

@@ -170,6 +170,16 @@ class Vda5050Adapter(Adapter):
             status = vehicle.controller.status(time.monotonic())
             raise CommandRefusedError(status or "the vehicle does not show that it stands") from None
 
+    def stop_unannounced(self) -> None:
+        """Stop the vehicles that have said that they are connected, and no state yet."""
+        for vehicle in self._vehicles.values():
+            if not vehicle.is_introduced:
+                try:
+                    vehicle.controller.halt(time.monotonic(), emergency=True)
+                    self._carry_out(vehicle)
+                except Exception:
+                    self._log_unforeseen(vehicle.controller.vehicle)
+
     def admitted(self, robot: str) -> None:
         """Report the vehicle's position."""
         if (vehicle := self._robots.get(robot)) is not None:

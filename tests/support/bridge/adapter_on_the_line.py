@@ -24,6 +24,7 @@ class ObedientAdapter(Adapter):
         self.kind = kind
         self.commands: list[Command] = []
         self.stops: list[tuple[str, bool]] = []
+        self.stops_of_unannounced = 0
         self.refusals: list[tuple[str, str]] = []
         self.during: Callable[[Command], Any] | None = None
 
@@ -37,6 +38,9 @@ class ObedientAdapter(Adapter):
 
     async def stop(self, robot: str, *, emergency: bool) -> None:
         self.stops.append((robot, emergency))
+
+    def stop_unannounced(self) -> None:
+        self.stops_of_unannounced += 1
 
     def refused(self, robot: str, reason: str) -> None:
         self.refusals.append((robot, reason))

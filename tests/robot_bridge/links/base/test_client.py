@@ -181,7 +181,7 @@ async def test_what_goes_wrong_with_one_robot_keeps_a_stop_from_no_other(tmp_pat
             for name in ("r1", "r2"):
                 await asyncio.to_thread(link.do, "add", name, ("targets",))
             async with asyncio.timeout(40):
-                while ("r2", True) not in link.adapter.stops:
+                while ("r2", True) not in link.adapter.stops or not link.adapter.stops_of_unannounced:
                     await asyncio.sleep(0.01)
         finally:
             await asyncio.to_thread(link.end)

@@ -166,6 +166,23 @@ def test_a_stop_comes_before_all_orders_and_takes_back_its_own_that_still_waits(
     assert carry_out(adapter, CANCEL) == [["instantActions"], []]
 
 
+def test_an_emergency_stop_reaches_vehicles_that_have_said_no_state(adapter, monkeypatch, caplog):
+    for serial in ("1", "2", "3"):
+        online(adapter, serial)
+    first, _, third = adapter._vehicles.values()
+    monkeypatch.setattr(first.controller, "halt", lambda now, *, emergency: [].pop())
+    third.is_introduced = True
+    adapter._broker._is_connected = True
+    adapter._broker._urgent.clear()
+    adapter.stop_unannounced()
+    sent = [(topic, json.loads(payload)["actions"]) for topic, payload in adapter._broker._urgent]
+    assert [(topic, [one["actionType"] for one in actions]) for topic, actions in sent] == [
+        ("uagv/v2/Acme/2/instantActions", ["cancelOrder"]),
+        ("uagv/v2/Acme/2/instantActions", ["startPause"]),
+    ]
+    assert "vehicle Acme/1" in caplog.text
+
+
 def test_on_a_full_disk_no_order_is_published_and_every_stop_is(adapter, tmp_path, caplog):
     online(adapter, "1")
     (tmp_path / "yard.vehicles").write_text("no folder", encoding="utf-8")
