@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -256,18 +257,18 @@ def site_frame(
     context: QgsProcessingContext,
     crs: QgsCoordinateReferenceSystem,
 ) -> SiteFrame:
-    """Return the site frame: from ORIGIN and ROTATION, else the project's, else ``crs`` itself."""
+    """Return the project's site frame, else ``crs`` itself, with ORIGIN and ROTATION where they are given."""
     name = crs.authid() or (crs_name(crs) if crs.isValid() else "")
-    if not _given(parameters, ORIGIN) and not _given(parameters, ROTATION):
-        known = frame_in_project(context.project(), crs) if context.project() is not None else None
-        return known or SiteFrame(name, (0.0, 0.0))
-    origin = (0.0, 0.0)
+    known = frame_in_project(context.project(), crs) if context.project() is not None else None
+    frame = known or SiteFrame(name, (0.0, 0.0))
     if _given(parameters, ORIGIN):
-        origin = point_in(algorithm, parameters, ORIGIN, context, crs)
-    degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
-    if not math.isfinite(degrees):
-        raise ParameterError(tr("ROTATION {degrees} is not finite: give a number.", degrees=degrees))
-    return SiteFrame(name, origin, math.radians(degrees))
+        frame = replace(frame, origin=point_in(algorithm, parameters, ORIGIN, context, crs))
+    if _given(parameters, ROTATION):
+        degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
+        if not math.isfinite(degrees):
+            raise ParameterError(tr("ROTATION {degrees} is not finite: give a number.", degrees=degrees))
+        frame = replace(frame, rotation=math.radians(degrees))
+    return frame
 
 
 def map_window(

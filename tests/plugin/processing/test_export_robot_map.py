@@ -91,6 +91,18 @@ def test_a_project_lends_its_site_frame_unless_another_is_given(export, wall):
     assert lines(export(wall, project=project, ORIGIN="0,0", **window).map.obstacles[0]) == [(0, 5, 50, 5)]
 
 
+def test_an_origin_or_a_rotation_alone_leaves_the_projects_other_half(export, wall):
+    project = QgsProject()
+    project.setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+    for name, value in (("site_crs", "EPSG:32633"), ("origin_x", 10), ("origin_y", 5), ("rotation_deg", 90)):
+        QgsExpressionContextUtils.setProjectVariable(project, f"fleet_{name}", value)
+    window = {"CENTER": "10,5", "WIDTH": 200, "HEIGHT": 200, "project": project}
+    meta = export(wall, ROTATION=0, **window).map.meta
+    assert (meta["origin"], float(meta["rotation"])) == ("10.000,5.000", 0.0)
+    meta = export(wall, ORIGIN="0,5", **window).map.meta
+    assert (meta["origin"], float(meta["rotation"])) == ("0.000,5.000", pytest.approx(math.pi / 2))
+
+
 def test_a_rotated_site_gets_the_smallest_window_that_holds_the_extent(export, wall):
     done = export(wall, EXTENT="0,50,0,10 [EPSG:32633]", ROTATION=90)
     assert done.map.border == (0, -50, 10, 0)
