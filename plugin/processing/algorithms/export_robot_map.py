@@ -29,7 +29,6 @@ from ..common.algorithm import FleetAlgorithm, Parameters, shown_by_processing
 from ..common.map_files import obstacles_in_words
 from ..common.outputs import write_whole
 from ..common.parameters import (
-    layers_problem,
     profile_parameter,
     warn_of_profile,
     window_parameters,
@@ -111,9 +110,7 @@ class ExportRobotMap(FleetAlgorithm):
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which report an invalid value without the reason.
-        problem = window_problem(parameters) or layers_problem(
-            parameters, export_parameters.OBSTACLES, context
-        )
+        problem = window_problem(parameters)
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)

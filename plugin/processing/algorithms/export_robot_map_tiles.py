@@ -47,7 +47,6 @@ from ..common.parameters import (
     PAPERS_SIDE_M,
     filter_in,
     frame_parameters,
-    layers_problem,
     map_window,
     profile_parameter,
     warn_of_profile,
@@ -368,9 +367,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        problem = tiles_problem(parameters) or layers_problem(
-            parameters, export_parameters.OBSTACLES, context
-        )
+        problem = tiles_problem(parameters)
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)

@@ -22,12 +22,14 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingFeedback,
     QgsProcessingLayerPostProcessorInterface,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
     QgsProcessingUtils,
     QgsProject,
+    QgsProviderRegistry,
     QgsVectorLayer,
     QgsWkbTypes,
 )
@@ -194,6 +196,8 @@ def value_problem(
                 name=name,
                 names=", ".join(known),
             )
+        if known[name].type() in _LAYER_TYPES and (problem := layers_problem(parameters, name, context)):
+            return problem
         wanted = _expected(known[name], value, context)
         if wanted:
             return tr("{name} is {value}: give {wanted}.", name=name, value=value, wanted=wanted)
@@ -224,6 +228,65 @@ def _is_number(value: str) -> bool:
         return math.isfinite(float(value)) and "_" not in value
     except ValueError:
         return False
+
+
+# --- Layers of a parameter, before they are read ---
+
+_LAYER_TYPES = ("source", "vector", "multilayer")
+SHOWN = 6
+"""Number of layers of a file that are named."""
+
+
+def layers_problem(parameters: Parameters, name: str, context: QgsProcessingContext) -> str:
+    """Return the error of the first layer in the parameter ``name`` that cannot be read, or an empty text.
+
+    Where there are others, Processing itself silently ignores such a layer; and of a file with several
+    layers it takes the first.
+    """
+    values = parameters.get(name)
+    for value in values if isinstance(values, (list, tuple)) else [values]:
+        if isinstance(value, QgsProcessingFeatureSourceDefinition):
+            value = value.source.staticValue()
+        problem = _problem(name, value, context) if isinstance(value, str) and value else ""
+        if problem:
+            return problem
+    return ""
+
+
+def _problem(name: str, value: str, context: QgsProcessingContext) -> str:
+    layer = QgsProcessingUtils.mapLayerFromString(value, context)
+    if layer is None:
+        return tr(
+            "{name}: the layer {layer} cannot be opened: check the file, and the layer's name after "
+            "'|layername='.",
+            name=name,
+            layer=value,
+        )
+    project = context.project()
+    of_project = project is not None and project.mapLayer(layer.id()) is not None
+    inside = [] if of_project else _layers_beside(layer)
+    if not inside:
+        return ""
+    return tr(
+        "{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.",
+        name=name,
+        file=value,
+        count=len(inside),
+        layers=", ".join(inside[:SHOWN]) + (", …" if len(inside) > SHOWN else ""),
+        first=inside[0],
+    )
+
+
+def _layers_beside(layer: QgsMapLayer) -> list[str]:
+    """Return the layers with geometry in the file of ``layer``, empty where it is the only one or named."""
+    registry = QgsProviderRegistry.instance()
+    parts = registry.decodeUri(layer.providerType(), layer.source())
+    if layer.providerType() != "ogr" or parts.get("layerName") or parts.get("layerId") is not None:
+        return []
+    found = registry.providerMetadata("ogr").querySublayers(str(parts.get("path")))
+    bare = QgsWkbTypes.Type.NoGeometry
+    names = list(dict.fromkeys(sublayer.name() for sublayer in found if sublayer.wkbType() != bare))
+    return names if len(names) > 1 else []
 
 
 # --- The place of results in the layer tree: above layers that would cover them ---

@@ -34,14 +34,13 @@ from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import LayerTypeError
 from ...ui.language import first_of, tr
-from .algorithm import ParameterError, Parameters, advanced, enum_parameter
+from .algorithm import ParameterError, Parameters, advanced, enum_parameter, layers_problem
 from .map_files import obstacles_in_words
 from .outputs import OutputError, check_target
 from .parameters import (
     LOCAL,
     chosen_crs,
     layers_of_project,
-    layers_problem,
     map_window,
     setups_of,
     site_frame,

@@ -37,7 +37,7 @@ from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFA
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import LayerTypeError
 from ...ui.language import tr
-from .algorithm import ParameterError, Parameters, advanced
+from .algorithm import ParameterError, Parameters, advanced, layers_problem
 from .export_parameters import DEFAULT_HEIGHT, default_height
 from .parameters import (
     LOCAL,
@@ -46,7 +46,6 @@ from .parameters import (
     extent_in,
     frame_parameters,
     layers_of_project,
-    layers_problem,
     profile_parameter,
     setups_of,
     site_frame,

@@ -7,11 +7,13 @@ import re
 import pytest
 from fleet_supervisor.plugin.plugin import FleetProvider
 from fleet_supervisor.plugin.processing.common import algorithm as parameter_labels
-from fleet_supervisor.plugin.processing.common.algorithm import plain_text
+from fleet_supervisor.plugin.processing.common.algorithm import FleetAlgorithm, plain_text
+from osgeo import ogr
 from qgis.core import (
     QgsApplication,
     QgsProcessingContext,
     QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingFeedback,
     QgsProject,
 )
@@ -99,6 +101,30 @@ def test_a_dialogs_errors_name_parameters_by_their_labels_and_a_scripts_by_their
     names = {one.name() for one in algorithm.parameterDefinitions()}
     assert not names & set(re.findall(r"\w+", in_dialog))
     assert in_dialog.startswith("Neither “Centre of the window” nor “")
+
+
+def test_every_parameter_for_layers_asks_which_of_a_files_layers_is_meant(provider, tmp_path):
+    """QGIS takes the first: of the plugin's own site.gpkg the obstacles, in place of keepouts, say."""
+    file = tmp_path / "site.gpkg"
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(file))
+    for name in ("obstacles", "keepouts"):
+        source.CreateLayer(name, None, ogr.wkbPolygon)
+    source = None
+    context, asked = QgsProcessingContext(), 0
+    for algorithm in provider.algorithms():
+        for one in algorithm.parameterDefinitions():
+            if one.type() not in ("source", "vector", "layer", "multilayer"):
+                continue
+            asked += 1
+            value = [str(file)] if one.type() == "multilayer" else str(file)
+            for given in (value, QgsProcessingFeatureSourceDefinition(str(file), True)):
+                _, said = FleetAlgorithm.checkParameterValues(algorithm, {one.name(): given}, context)
+                where = f"{one.name()}: the file {file} holds 2 layers"
+                assert said.startswith(where), f"{algorithm.name()}: {said}"
+            gone = f"{file}|layername=keepout"
+            _, said = FleetAlgorithm.checkParameterValues(algorithm, {one.name(): gone}, context)
+            assert said.startswith(f"{one.name()}: the layer {gone} cannot be opened")
+    assert asked > 15
 
 
 def test_an_error_of_a_run_names_them_so_too(provider, monkeypatch):
