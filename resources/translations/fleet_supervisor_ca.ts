@@ -5954,6 +5954,11 @@
             <translation>Retira la darrera disposició</translation>
         </message>
         <message>
+            <location filename="../../plugin/planning/layouts/dimensions.py" />
+            <source>too many cones; a plan has {most} at most</source>
+            <translation>massa cons; un pla en té {most} com a màxim</translation>
+        </message>
+        <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
             <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
             <translation>Els cons de la capa {layer} no s'han desat amb el projecte: {problem}. Exporteu la capa a un fitxer abans de tancar QGIS.</translation>
@@ -8279,6 +8284,16 @@
             <translation>{name} és {value}: doneu {wanted}.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: el fitxer {file} conté {count} capes ({layers}): digueu quina, com a {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
             <translation>Classes de superfície permeses, com ara asphalt (per defecte: totes)</translation>
@@ -8772,16 +8787,6 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
             <translation>{name} {value} és en el SRC {own}, que no té cap relació coneguda amb el SRC {crs}: doneu-ho en aquest últim.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
-            <translation>{name}: el fitxer {file} conté {count} capes ({layers}): digueu quina, com a {file}|layername={first}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

@@ -5954,6 +5954,11 @@
             <translation>Retirar la última disposición</translation>
         </message>
         <message>
+            <location filename="../../plugin/planning/layouts/dimensions.py" />
+            <source>too many cones; a plan has {most} at most</source>
+            <translation>demasiados conos; un plan tiene {most} como máximo</translation>
+        </message>
+        <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
             <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
             <translation>Los conos de la capa {layer} no se han guardado con el proyecto: {problem}. Exporte la capa a un archivo antes de cerrar QGIS.</translation>
@@ -8279,6 +8284,16 @@
             <translation>{name} es {value}: indique {wanted}.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: el archivo {file} contiene {count} capas ({layers}): indique cuál, como en {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
             <translation>Clases de superficie permitidas, como asphalt (por defecto: todas)</translation>
@@ -8772,16 +8787,6 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
             <translation>{name} {value} está en el SRC {own}, que no tiene relación conocida con el SRC {crs}: délo en este último.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
-            <translation>{name}: el archivo {file} contiene {count} capas ({layers}): indique cuál, como en {file}|layername={first}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

@@ -5920,6 +5920,11 @@
             <translation>Az utolsó elrendezés visszavonása</translation>
         </message>
         <message>
+            <location filename="../../plugin/planning/layouts/dimensions.py" />
+            <source>too many cones; a plan has {most} at most</source>
+            <translation>túl sok bója; egy tervben legfeljebb {most} lehet</translation>
+        </message>
+        <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
             <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
             <translation>A(z) {layer} réteg bójái nem mentődtek a projekttel: {problem}. Exportálja a réteget fájlba, mielőtt bezárja a QGIS-t.</translation>
@@ -8219,6 +8224,16 @@
             <translation>{name} értéke {value}: adja meg így: {wanted}.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: a(z) {file} fájlban {count} réteg van ({layers}): adja meg, melyik kell, így: {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/algorithm.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
             <translation>Megengedett felületosztályok, például asphalt (alapértelmezés: mind)</translation>
@@ -8712,16 +8727,6 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
             <translation>{name} {value} vetülete {own}, amelynek nincs ismert kapcsolata ezzel: {crs}. Adja meg abban.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
-            <translation>{name}: a(z) {file} fájlban {count} réteg van ({layers}): adja meg, melyik kell, így: {file}|layername={first}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/parameters.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

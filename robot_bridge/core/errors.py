@@ -193,6 +193,14 @@ class DimensionError(LayoutsError):
     """A dimension that a layout does not have, or a value that it cannot have."""
 
 
+class ConeCountError(DimensionError):
+    """A dimension, named ``dimension``, that makes more cones than a layout may have."""
+
+    def __init__(self, text: str, dimension: str) -> None:
+        super().__init__(text)
+        self.dimension = dimension
+
+
 class LayoutLineError(LayoutsError):
     """A line that a layout cannot lie along."""
 

@@ -18,7 +18,8 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ....robot_bridge.core.layouts.layout import Dimension, DimensionFault, Layout
+from ....robot_bridge.core.errors import ConeCountError, DimensionError
+from ....robot_bridge.core.layouts.layout import MOST_CONES, Dimension, DimensionFault, Layout
 from ...cone_texts import (
     DIMENSION_CHOICES,
     LAYOUT_TITLES,
@@ -194,11 +195,27 @@ class LayoutDimensions(QDialog):
             self._mark(one, values[one.name], fault)
             if fault is not None:
                 wrong.append(f"{dimension_in_words(self._kind, one)}: {fault_in_words(one, fault)}.")
+        layout = None if wrong else self._layout(values, wrong)
         self.problem.setText("\n".join(wrong))
         self.problem.setVisible(bool(wrong))
-        if not wrong:
+        if layout is not None:
             remember(self._kind, values)
-            self.changed.emit(self._kind.of(values))
+            self.changed.emit(layout)
+
+    def _layout(self, values: dict[str, float], wrong: list[str]) -> Layout | None:
+        """Return the layout, or None and append to ``wrong`` what keeps its values from going together."""
+        try:
+            layout = self._kind.of(values)
+            layout.spots()
+        except ConeCountError as error:
+            (one,) = (one for one in self._kind.dimensions() if one.name == error.dimension)
+            many = tr("too many cones; a plan has {most} at most", most=MOST_CONES)
+            wrong.append(f"{dimension_in_words(self._kind, one)}: {many}.")
+        except DimensionError as error:
+            wrong.append(str(error))
+        else:
+            return layout
+        return None
 
     def _mark(self, one: Dimension, value: float, fault: DimensionFault | None) -> None:
         """Mark an error, and a value that differs from the standard."""
@@ -219,7 +236,10 @@ def remembered(kind: type[Layout]) -> Layout:
             continue
         if one.fault(number) is None:
             values[one.name] = number
-    return kind.of(values)
+    try:
+        return kind.of(values)
+    except DimensionError:
+        return kind.of({})
 
 
 def remember(kind: type[Layout], values: dict[str, float]) -> None:

@@ -314,6 +314,7 @@ def _rounded(corner: np.ndarray) -> list[float]:
 
 # --- Layers of a parameter, before they are read ---
 
+
 def layer_in(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
 ) -> QgsVectorLayer | None:

@@ -10,7 +10,20 @@ from typing import ClassVar
 import numpy as np
 
 from ..errors import DimensionError
-from .layout import BIG_ORANGE, BLUE, ORANGE, YELLOW, Layout, Spot, across, dimension, lane, mirrored, spaced
+from .layout import (
+    BIG_ORANGE,
+    BLUE,
+    ORANGE,
+    YELLOW,
+    Layout,
+    Spot,
+    across,
+    dimension,
+    lane,
+    mirrored,
+    pairs,
+    spaced,
+)
 
 # --- Layouts on circles: the constant-radius circle and the skid pad ---
 
@@ -40,6 +53,9 @@ class ConstantRadius(Layout):
         least=-1,
         choices={LEFT_TURN: "to the left", RIGHT_TURN: "to the right"},
     )
+
+    def cone_counts(self) -> dict[str, float]:
+        return {"radius": 4 * math.pi * self.radius / self.spacing}
 
     def spots(self) -> list[Spot]:
         within, around = self.radius - self.width / 2, self.radius + self.width / 2
@@ -86,6 +102,15 @@ class SkidPad(Layout):
     end_cones: float = dimension(2, "Cones that close the way out", "", whole=True)
     timing_along: float = dimension(1.485, "From the timing line to the big cones before and behind it")
     timing_across: float = dimension(1.7837, "From the middle of the path to these cones")
+
+    def cone_counts(self) -> dict[str, float]:
+        return {
+            "inner_count": 2 * self.inner_count,
+            "outer_count": 2 * self.outer_count,
+            "entry_length": pairs(self.entry_length, self.gate_spacing),
+            "exit_length": pairs(self.exit_length, self.gate_spacing),
+            "end_cones": self.end_cones,
+        }
 
     def spots(self) -> list[Spot]:
         if not self.inner < self.outer or not 0 < self.outer_span <= 360:
@@ -162,6 +187,9 @@ class _LaneChange(Layout):
     @abstractmethod
     def lanes(self) -> list[tuple[str, float, float, float, float]]:
         """Return role, start, length, y of the right limit and width of each lane, for a turn to the left."""
+
+    def cone_counts(self) -> dict[str, float]:
+        return {"cones_per_row": 6 * self.cones_per_row}
 
     def spots(self) -> list[Spot]:
         count = int(self.cones_per_row)
@@ -298,6 +326,9 @@ class Slalom(Layout):
     gate_distance: float = dimension(6, "From a gate to the nearest cone", least=0.1)
     gate_width: float = dimension(3, "Clear width of the gates", least=0.1)
 
+    def cone_counts(self) -> dict[str, float]:
+        return {"count": self.count}
+
     def spots(self) -> list[Spot]:
         def gate(x: float, role: str) -> list[Spot]:
             colours = (BIG_ORANGE, BIG_ORANGE)
@@ -326,16 +357,24 @@ class BrakingLane(Layout):
     width: float = dimension(3.5, "Clear width of the lane", least=0.1)
     spacing: float = dimension(10, "From cone to cone along the lane", least=0.5)
 
+    def cone_counts(self) -> dict[str, float]:
+        return {
+            "approach": pairs(self.approach, self.spacing),
+            "speed": pairs(self._stopping_distance(), self.spacing),
+        }
+
     def spots(self) -> list[Spot]:
         right, base = -self.width / 2, self.cone_base
-        stop = 0.1 * self.speed + 0.006 * self.speed**2
         before = spaced(0.0, self.approach, self.spacing)[:-1] if self.approach else []
-        after = spaced(self.approach, stop, self.spacing)[1:]
+        after = spaced(self.approach, self._stopping_distance(), self.spacing)[1:]
         return [
             *lane(before, right, self.width, base, "approach"),
             *lane([self.approach], right, self.width, base, "braking", (BIG_ORANGE, BIG_ORANGE)),
             *lane(after, right, self.width, base, "stopping"),
         ]
+
+    def _stopping_distance(self) -> float:
+        return 0.1 * self.speed + 0.006 * self.speed * self.speed
 
 
 @dataclass(frozen=True)
@@ -358,6 +397,13 @@ class Acceleration(Layout):
     exit_length: float = dimension(100, "Lane to stop in behind the finish line", least=0.5)
     line_distance: float = dimension(0.3, "From a line to the big cones before and behind it")
     end_cones: float = dimension(1, "Cones that close the end of the lane", "", whole=True)
+
+    def cone_counts(self) -> dict[str, float]:
+        return {
+            "length": pairs(self.length, self.spacing),
+            "exit_length": pairs(self.exit_length, self.spacing),
+            "end_cones": self.end_cones,
+        }
 
     def spots(self) -> list[Spot]:
         right, base = -self.width / 2, self.cone_base
@@ -394,6 +440,9 @@ class Corridor(Layout):
     length: float = dimension(50, "Length of the corridor", least=0.1)
     width: float = dimension(3, "Clear width of the corridor", least=0.1)
     spacing: float = dimension(5, "From pair to pair", least=0.5)
+
+    def cone_counts(self) -> dict[str, float]:
+        return {"length": pairs(self.length, self.spacing)}
 
     def spots(self) -> list[Spot]:
         places = spaced(0.0, self.length, self.spacing)

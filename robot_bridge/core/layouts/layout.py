@@ -12,7 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import DimensionError, LayoutLineError
+from ..errors import ConeCountError, DimensionError, LayoutLineError
+from ..messages.plans import MOST_CONES
 
 # --- One cone of a layout ---
 
@@ -84,6 +85,11 @@ def lane(
 def spaced(start: float, length: float, spacing: float) -> list[float]:
     """Return x from ``start`` to ``start + length``, evenly, as near to ``spacing`` apart as that allows."""
     return [float(x) for x in np.linspace(start, start + length, max(1, round(length / spacing)) + 1)]
+
+
+def pairs(length: float, spacing: float) -> float:
+    """Return how many cones a :func:`lane` along :func:`spaced` places has, without making them."""
+    return 2 * (length / spacing + 1)
 
 
 def across(x: float, right: float, width: float, count: int, role: str) -> list[Spot]:
@@ -175,7 +181,8 @@ def dimension(standard: float, text: str, unit: str = "m", least: float = 0.0, *
 class Layout(ABC):
     """A layout with its dimensions, in a frame of its own: x along the travel, y to the left, in metres.
 
-    :raises DimensionError: when a dimension has an invalid value.
+    :raises DimensionError: when a dimension has an invalid value; ConeCountError, naming it, when it makes
+        more than ``MOST_CONES`` cones, as many as a plan may have.
     """
 
     NAME: ClassVar[str] = ""
@@ -192,6 +199,15 @@ class Layout(ABC):
             if problem:
                 value = getattr(self, one.name)
                 raise DimensionError(f"{self.NAME}: {one.name} is {value:g}: {problem}.")
+        counts = self.cone_counts()
+        total = sum(counts.values())
+        if total > MOST_CONES:
+            most = max(counts, key=lambda name: counts[name])
+            raise ConeCountError(
+                f"{self.NAME}: {most} is {getattr(self, most):g}: that makes {total:.0f} cones, "
+                f"and a plan has {MOST_CONES} at most: give less, or a greater spacing if there is one.",
+                most,
+            )
 
     @classmethod
     def dimensions(cls) -> list[Dimension]:
@@ -213,6 +229,10 @@ class Layout(ABC):
             if name not in known:
                 raise DimensionError(f"{cls.NAME} has no dimension {name!r}: give {', '.join(known)}.")
         return cls(**values)
+
+    @abstractmethod
+    def cone_counts(self) -> dict[str, float]:
+        """Return how many cones, to about ten, each dimension makes, without making them."""
 
     @abstractmethod
     def spots(self) -> list[Spot]:

@@ -436,6 +436,23 @@ def test_what_cannot_be_is_said_and_not_placed(entry, fields, iface):
     assert entry.tool.layout.vehicle_width == 2.0
 
 
+@pytest.mark.parametrize(
+    ("name", "dimension", "value", "said"),
+    [
+        ("slalom", "count", "5001", "Cones to go round: too many cones; a plan has 5000 at most."),
+        ("circle", "radius", "1", "circle: the lane is wider than the circle: give a larger radius."),
+    ],
+)
+def test_dimensions_of_too_many_cones_or_that_do_not_go_together_are_said(
+    entry, fields, name, dimension, value, said
+):
+    shown = fields(name)
+    before = entry.tool.layout
+    type_into(shown[dimension], value)
+    assert entry.dimensions.problem.text() == said
+    assert entry.tool.layout == before == remembered(LAYOUTS[name])
+
+
 def test_the_wheel_scrolls_and_changes_no_dimension(entry, fields):
     shown = fields("iso3888_1")
     for field in (*shown.values(), entry.dimensions.heading):
@@ -463,6 +480,8 @@ def test_what_was_kept_and_cannot_be_any_more_is_the_standards(entry, fields):
     fields("slalom")
     QgsSettings().setValue(f"{GROUP}/slalom/spacing", "-3")
     QgsSettings().setValue(f"{GROUP}/slalom/count", "many")
+    assert remembered(LAYOUTS["slalom"]) == LAYOUTS["slalom"].of({})
+    QgsSettings().setValue(f"{GROUP}/slalom/count", "20000")
     assert remembered(LAYOUTS["slalom"]) == LAYOUTS["slalom"].of({})
 
 

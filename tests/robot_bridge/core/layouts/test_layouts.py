@@ -191,6 +191,13 @@ def test_the_corridor_has_pairs_evenly_apart() -> None:
         ("iso3888_1", {"turn": 2}, "turn is 2: give one of -1, 1"),
         ("iso3888_1", {"vehicle_width": math.nan}, "vehicle_width is nan: give a number"),
         ("circle", {"radius": 1}, "the lane is wider than the circle"),
+        ("slalom", {"count": 1e9}, "count is 1e.09: that makes 1000000000 cones, and a plan has 5000"),
+        ("corridor", {"length": 1e300}, "length is 1e.300: that makes"),
+        ("braking_lane", {"speed": 1e200}, "speed is 1e.200: that makes inf cones"),
+        ("circle", {"radius": 1e9}, "radius is 1e.09: that makes"),
+        ("iso3888_2", {"cones_per_row": 900}, "cones_per_row is 900: that makes 5400 cones"),
+        ("fs_skidpad", {"outer_count": 2600}, "outer_count is 2600: that makes"),
+        ("fs_acceleration", {"end_cones": 4990}, "end_cones is 4990: that makes"),
         ("fs_skidpad", {"inner": 30}, "give an outer circle larger than the inner one"),
     ],
 )
@@ -199,6 +206,18 @@ def test_what_cannot_be_is_refused_with_what_to_give(
 ) -> None:
     with pytest.raises(DimensionError, match=reason):
         LAYOUTS[name].of(values).cones()
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_cones_are_counted_before_they_are_made(name: str) -> None:
+    kind = LAYOUTS[name]
+    counted = set(kind.of({}).cone_counts())
+    # Each of them larger, one after the other, and what is a spacing smaller.
+    for one in kind.dimensions():
+        if one.name in counted or "spacing" in one.name:
+            layout = kind.of({one.name: one.standard * (5 if one.name in counted else 0.5)})
+            made = len(layout.spots())
+            assert sum(layout.cone_counts().values()) == pytest.approx(made, abs=12), one.name
 
 
 def test_with_the_width_of_a_real_acceleration_every_cone_stands_where_it_stood(data: Path) -> None:
