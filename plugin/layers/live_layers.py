@@ -156,6 +156,19 @@ def make_live(layer: QgsVectorLayer, kind: str) -> None:
     layer.setCustomProperty(MARK, kind)
     layer.setCustomProperty("skipMemoryLayersCheck", 1)
     layer.setReadOnly(True)
+    _escape_map_tip(layer)
+
+
+def escaped(expression: str) -> str:
+    """Return the QGIS expression for the text of ``expression`` in HTML, as in map tips."""
+    # A map's entries are replaced one after the other, by the order of their keys: & comes first.
+    return f"replace(to_string({expression}), map('&','&amp;','<','&lt;','>','&gt;'))"
+
+
+def _escape_map_tip(layer: QgsMapLayer) -> None:
+    """Have texts of robots shown as they are: without a template QGIS takes them for HTML."""
+    if not layer.mapTipTemplate():
+        layer.setMapTipTemplate(f"[% {escaped('display_expression()')} %]")
 
 
 def live_layers(project: QgsProject) -> list[QgsMapLayer]:
@@ -176,6 +189,7 @@ def apply_style(project: QgsProject, layer: QgsMapLayer) -> bool:
     if not found or not text:
         return False
     QgsMapLayerStyle(text).writeToLayer(layer)
+    _escape_map_tip(layer)
     return True
 
 

@@ -34,7 +34,7 @@ from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.report_caches import ObservationCache
-from ..layers.live_layers import RowLayer
+from ..layers.live_layers import RowLayer, escaped
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
 from ..ui.language import date_and_time, time_of_day, tr
@@ -261,8 +261,9 @@ STATES = {
 }
 PICTURES_FROM = 1000
 """The scale from which images are shown on the map itself."""
-MAP_TIP = """
-<b>[% "object" %]</b> [% coalesce("label", '') %]<br>[% {state} %] · [% "robot" %] · [% "received" %]
+_OBJECT, _LABEL = escaped('"object"'), escaped("coalesce(\"label\", '')")
+MAP_TIP = f"""
+<b>[% {_OBJECT} %]</b> [% {_LABEL} %]<br>[% {{state}} %] · [% "robot" %] · [% "received" %]
 [% if("thumbnail" != '', '<br><img width="220" src="file:///' || "thumbnail" || '">', '') %]
 """
 

@@ -6,9 +6,16 @@ from dataclasses import replace
 from itertools import groupby
 
 import pytest
-from fleet_supervisor.plugin.layers.live_layers import AT_ONCE, GROUP, MARK, RowLayer, fleet_group
+from fleet_supervisor.plugin.layers.live_layers import (
+    AT_ONCE,
+    GROUP,
+    MARK,
+    RowLayer,
+    fleet_group,
+    keep_style,
+)
 from fleet_supervisor.plugin.ui import scheduling
-from qgis.core import QgsProject
+from qgis.core import QgsExpression, QgsExpressionContext, QgsExpressionContextUtils, QgsProject
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -53,6 +60,21 @@ def test_nothing_is_made_for_nothing(points, project, site):
     show(points, [], site)
     show(points, TWO, None)
     assert points.layer is None and project.mapLayers() == {}
+
+
+def test_no_text_of_a_row_is_html_in_the_map_tip(project, points, site):
+    """QGIS shows the display name as HTML where a layer has no template, as in older files with its style."""
+    for _ in range(2):
+        show(points, [([(1.0, 2.0)], ["a & <img src='http://h/x'>", 1])], site)
+        layer = points.layer
+        (feature,) = layer.getFeatures()
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+        context.setFeature(feature)
+        tip = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), context)
+        assert tip == "a &amp; &lt;img src='http://h/x'&gt;"
+        layer.setMapTipTemplate("")
+        keep_style(project, layer)
+        project.removeMapLayer(layer.id())
 
 
 def test_each_row_is_a_feature_where_it_is(points, site):

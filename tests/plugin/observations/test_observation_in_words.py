@@ -47,6 +47,15 @@ def test_a_state_is_told_in_the_operators_words_wherever_it_is_read(layer, state
     assert rule.label() == words
 
 
+def test_no_text_of_a_robot_is_html_in_the_map_tip(layer):
+    context = context_of(layer, "pending")
+    feature = context.feature()
+    feature["object"], feature["label"] = "<img src='http://h/x'>", "a & b <script>"
+    context.setFeature(feature)
+    tip = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), context)
+    assert "<b>&lt;img src='http://h/x'&gt;</b> a &amp; b &lt;script&gt;<br>" in tip
+
+
 @pytest.mark.parametrize("size", [(640, 360), (300, 400)])
 def test_no_image_makes_the_form_broader_than_it_may_be(qgis_app, tmp_path, size):
     image = QImage(*size, QImage.Format.Format_RGB32)
