@@ -13,6 +13,7 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingFeatureSource,
     QgsProcessingFeedback,
+    QgsProcessingMultiStepFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterCrs,
     QgsProcessingParameterFeatureSource,
@@ -106,7 +107,8 @@ class AsPlacedReport(FleetAlgorithm):
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
         with shown_by_processing(feedback):
-            read = read_placed_cones(source, feedback)
+            steps = QgsProcessingMultiStepFeedback(2, feedback)
+            read = read_placed_cones(source, steps)
             if read is None:
                 return {}
             cones, odd = read
@@ -122,7 +124,8 @@ class AsPlacedReport(FleetAlgorithm):
                 background=self.parameterAsLayerList(parameters, BACKGROUND, context),
             )
             file = Path(self.parameterAsFileOutput(parameters, OUTPUT, context))
-            pages = write_pdf(report, file, context.transformContext(), feedback)
+            steps.setCurrentStep(1)
+            pages = write_pdf(report, file, context.transformContext(), steps)
             if pages is None:
                 return {}
         self._written = file

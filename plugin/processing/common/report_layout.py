@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
@@ -11,6 +12,7 @@ from pathlib import Path
 
 from qgis.core import (
     Qgis,
+    QgsAbstractLayoutIterator,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
     QgsLayoutExporter,
@@ -22,7 +24,6 @@ from qgis.core import (
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
     QgsLayoutItemTextTable,
-    QgsLayoutMultiFrame,
     QgsLayoutPoint,
     QgsLayoutSize,
     QgsLayoutTable,
@@ -75,13 +76,15 @@ PAGE = (210.0, 297.0)
 """Millimetres, as everything here."""
 MARGIN = 15.0
 TEXT_WIDTH = PAGE[0] - 2 * MARGIN
+TABLE_HEIGHT = 264.0
 
 
-def a4_page(layout: QgsPrintLayout) -> QgsLayoutItemPage:
-    """Return a page for ``layout``, upright."""
-    page = QgsLayoutItemPage(layout)
-    page.setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
-    return page
+def a4_page(project: QgsProject) -> QgsPrintLayout:
+    """Return a layout of one page, upright."""
+    layout = QgsPrintLayout(project)
+    layout.initializeDefaults()
+    layout.pageCollection().page(0).setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
+    return layout
 
 
 def add_text(
@@ -91,7 +94,6 @@ def add_text(
     size: float,
     *,
     bold: bool = False,
-    page: int = 0,
 ) -> QgsLayoutItemLabel:
     """Add ``text`` in letters of ``size`` points, return its label; ``area`` as for :func:`place_item`."""
     label = QgsLayoutItemLabel(layout)
@@ -102,7 +104,7 @@ def add_text(
     else:
         # QGIS 3.22.
         label.setFont(letters.toQFont())
-    place_item(label, area, page)
+    place_item(label, area)
     layout.addLayoutItem(label)
     return label
 
@@ -126,11 +128,11 @@ def widths_of(layout: QgsPrintLayout, letters: QgsTextFormat) -> Callable[[str],
     return lambda text: QgsTextRenderer.textWidth(context, letters, [text]) / millimetre
 
 
-def place_item(item: QgsLayoutItem, area: tuple[float, float, float, float], page: int = 0) -> None:
-    """Put ``item`` into ``area`` of a page: left, top, width, height."""
+def place_item(item: QgsLayoutItem, area: tuple[float, float, float, float]) -> None:
+    """Put ``item`` into ``area`` of the page: left, top, width, height."""
     left, top, width, height = area
     item.attemptResize(QgsLayoutSize(width, height, QgsUnitTypes.LayoutUnit.LayoutMillimeters))
-    item.attemptMove(corner(left, top), page=page)
+    item.attemptMove(corner(left, top))
 
 
 def corner(left: float, top: float) -> QgsLayoutPoint:
@@ -157,33 +159,57 @@ NAMES = 3
 """Columns of names, the first ones: they share their room in proportion to their names."""
 LETTERS = 7.5
 """Points."""
+MOST_ROWS = 200
+"""Rows that certainly do not fit on a page."""
 BEYOND = "!"
 """Mark of a cone that is beyond the tolerance."""
 
 
-def add_table(layout: QgsPrintLayout, cones: Sequence[placed_cones.PlacedCone], tolerance: float) -> None:
-    """Put the table on the second page, and on as many more as needed, each with its heads."""
-    table = QgsLayoutItemTextTable(layout)
-    layout.addMultiFrame(table)
-    head = text_format(LETTERS, bold=True)
-    table.setHeaderTextFormat(head)
-    table.setContentTextFormat(text_format(LETTERS, bold=False))
-    # Bold letters are wider: a text that fits in bold fits.
-    _fill(table, [_row(cone, tolerance) for cone in cones], widths_of(layout, head))
-    table.setHeaderMode(QgsLayoutTable.HeaderMode.AllFrames)
-    table.setCellMargin(0.7)
-    table.setGridStrokeWidth(0.1)
-    table.setGridColor(QColor(173, 181, 189))
-    layout.pageCollection().addPage(a4_page(layout))
-    frame = QgsLayoutFrame(layout, table)
-    place_item(frame, (MARGIN, MARGIN, TEXT_WIDTH, 264), page=1)
-    table.addFrame(frame)
-    table.setResizeMode(QgsLayoutMultiFrame.ResizeMode.RepeatUntilFinished)
-    table.recalculateFrameSizes()
+class ReportTable:
+    """The rows and columns of the table, made page by page in layouts of their own.
+
+    One table over all pages would be laid out again for each of them: 24 s for 5 000 cones.
+    """
+
+    def __init__(self, cones: Sequence[placed_cones.PlacedCone], tolerance: float, project: QgsProject):
+        self._head = text_format(LETTERS, bold=True)
+        rows = [_row(cone, tolerance) for cone in cones]
+        layout = a4_page(project)
+        # Bold letters are wider: a text that fits in bold fits.
+        self._columns = _fitted(rows, widths_of(layout, self._head))
+        # What QGIS would go on with in a second frame is too much for a page.
+        at_once = -1 + bisect_right(
+            range(MOST_ROWS),
+            TABLE_HEIGHT + 1,
+            lo=1,
+            key=lambda count: self._add(layout, rows[:1] * count).totalSize().height(),
+        )
+        self.pages = [rows[k : k + at_once] for k in range(0, len(rows), at_once)]
+        """The rows of each page."""
+
+    def add_to(self, layout: QgsPrintLayout, number: int) -> None:
+        """Put the rows of that page, from 0, on the page of ``layout``, with the heads."""
+        self._add(layout, self.pages[number])
+
+    def _add(self, layout: QgsPrintLayout, rows: Sequence[list[str]]) -> QgsLayoutItemTextTable:
+        table = QgsLayoutItemTextTable(layout)
+        layout.addMultiFrame(table)
+        table.setHeaderTextFormat(self._head)
+        table.setContentTextFormat(text_format(LETTERS, bold=False))
+        table.setHeaderMode(QgsLayoutTable.HeaderMode.AllFrames)
+        table.setCellMargin(0.7)
+        table.setGridStrokeWidth(0.1)
+        table.setGridColor(QColor(173, 181, 189))
+        table.setColumns([_column(*column) for column in self._columns])
+        table.setContents(rows)
+        frame = QgsLayoutFrame(layout, table)
+        place_item(frame, (MARGIN, MARGIN, TEXT_WIDTH, TABLE_HEIGHT))
+        table.addFrame(frame)
+        return table
 
 
-def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Callable[[str], float]) -> None:
-    """Fill the table with rows, and fit its columns to the names as far as there is room."""
+def _fitted(rows: Sequence[list[str]], width_of: Callable[[str], float]) -> list[tuple[str, float, bool]]:
+    """Return the columns, fitted to the names as far as there is room; names in ``rows`` are shortened."""
     heads, widths, numbers = zip(*COLUMNS, strict=True)
     texts = [{head, *(row[k] for row in rows)} for k, head in enumerate(heads[:NAMES])]
     room = shared_widths(sum(widths[:NAMES]), [max(map(width_of, column)) for column in texts])
@@ -193,9 +219,7 @@ def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Ca
     ]
     for row in rows:
         row[:NAMES] = [short[text] for short, text in zip(fitting, row[:NAMES], strict=True)]
-    columns = zip(heads, [*room, *widths[NAMES:]], numbers, strict=True)
-    table.setColumns([_column(*column) for column in columns])
-    table.setContents(rows)
+    return list(zip(heads, [*room, *widths[NAMES:]], numbers, strict=True))
 
 
 def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
@@ -208,10 +232,9 @@ def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
 
 def _row(cone: placed_cones.PlacedCone, tolerance: float) -> list[str]:
     (east, north), (x, y) = cone.off, cone.planned
+    # In one line each: all rows are of one height.
     return [
-        cone.name,
-        cone.layout,
-        cone.robot,
+        *(" ".join(name.split()) for name in (cone.name, cone.layout, cone.robot)),
         "" if cone.at is None else time_in_words(cone.at),
         f"{x:.2f}",
         f"{y:.2f}",
@@ -258,57 +281,86 @@ def write_pdf(
     project.setCrs(report.crs)
     project.setTransformContext(transforms)
     with tempfile.TemporaryDirectory(prefix="fleet-report-") as folder:
-        layout = build_layout(report, project, Path(folder))
-        feedback.setProgress(40)
-        if feedback.isCanceled():
-            return None
+        pages = ReportPages(report, project, Path(folder))
         part = Path(folder) / "report.pdf"
         settings = QgsLayoutExporter.PdfExportSettings()
         # As text and not as outlines of letters: a report is searched and copied from.
         settings.textRenderFormat = Qgis.TextRenderFormat.AlwaysText
-        done = QgsLayoutExporter(layout).exportToPdf(str(part), settings)
+        # It says its progress before each page: QGIS's dialog handles events then, F10 and Cancel among them.
+        done, why = QgsLayoutExporter.exportToPdf(pages, str(part), settings, feedback)
+        if feedback.isCanceled():
+            return None
         if done != QgsLayoutExporter.ExportResult.Success:
             raise OutputError(
                 tr(
                     "QGIS cannot make the report (layout export {number}): check the free space, and the "
                     "background layers by leaving them out.",
-                    number=int(done),
+                    number=why or int(done),
                 )
             )
-        pages = layout.pageCollection().pageCount()
         write_whole(file, part.read_bytes(), tr("The report"))
-    return pages
+    return pages.count()
 
 
-def build_layout(report: ReportContent, project: QgsProject, folder: Path) -> QgsPrintLayout:
-    """Return the layout in ``project``; its pictures are in ``folder`` until it is exported."""
-    layout = QgsPrintLayout(project)
-    layout.initializeDefaults()
-    layout.pageCollection().page(0).setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
+class ReportPages(QgsAbstractLayoutIterator):
+    """The pages of the report for QGIS's export, each a layout that is made when its turn comes.
+
+    The pictures of the first one are in ``folder`` until it is exported.
+    """
+
+    def __init__(self, report: ReportContent, project: QgsProject, folder: Path) -> None:
+        super().__init__()
+        self._report, self._project, self._folder = report, project, folder
+        self._table = ReportTable(report.cones, report.tolerance, project)
+        self._number = -1
+        self._layout: QgsPrintLayout | None = None
+
+    def beginRender(self):
+        return True
+
+    def endRender(self):
+        return True
+
+    def count(self):
+        return 1 + len(self._table.pages)
+
+    def filePath(self, base: str, extension: str):
+        return f"{base}.{extension}"
+
+    def next(self):
+        self._number += 1
+        if self._number == self.count():
+            return False
+        self._layout = a4_page(self._project)
+        if self._number:
+            self._table.add_to(self._layout, self._number - 1)
+            add_text(self._layout, _key(self._report), (MARGIN, 282, TEXT_WIDTH, 5), 8)
+        else:
+            _first_page(self._layout, self._report, self._project, self._folder)
+        text = f"{self._report.title} · {self._number + 1} / {self.count()}"
+        label = add_text(self._layout, text, (MARGIN, 287, TEXT_WIDTH, 5), 8)
+        label.setHAlign(Qt.AlignmentFlag.AlignRight)
+        return True
+
+    def layout(self):
+        return self._layout
+
+
+def _first_page(layout: QgsPrintLayout, report: ReportContent, project: QgsProject, folder: Path) -> None:
     add_text(layout, report.title, (MARGIN, 12, TEXT_WIDTH, 10), 17, bold=True)
     add_text(layout, _summary(report), (MARGIN, 22, TEXT_WIDTH, 20), 9.5)
     _picture(layout, report, folder)
     _map(layout, report, project)
-    add_table(layout, report.cones, report.tolerance)
-    _feet(layout, report)
-    return layout
 
 
-def _feet(layout: QgsPrintLayout, report: ReportContent) -> None:
-    """Number the pages, and explain the columns on those of the table."""
-    key = tr(
+def _key(report: ReportContent) -> str:
+    """Return the explanation of the table's columns."""
+    return tr(
         "E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm",
         crs=report.crs.authid() or report.crs.description(),
         mark=BEYOND,
         tolerance=report.tolerance * 100,
     )
-    count = layout.pageCollection().pageCount()
-    for page in range(count):
-        if page:
-            add_text(layout, key, (MARGIN, 282, TEXT_WIDTH, 5), 8, page=page)
-        text = f"{report.title} · {page + 1} / {count}"
-        label = add_text(layout, text, (MARGIN, 287, TEXT_WIDTH, 5), 8, page=page)
-        label.setHAlign(Qt.AlignmentFlag.AlignRight)
 
 
 def _summary(report: ReportContent) -> str:

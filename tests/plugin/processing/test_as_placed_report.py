@@ -21,7 +21,7 @@ from fleet_supervisor.plugin.processing.common.placed_cones import (
 )
 from fleet_supervisor.plugin.processing.common.report_layout import (
     ReportContent,
-    build_layout,
+    ReportPages,
     shared_widths,
     shortened,
     widths_of,
@@ -31,7 +31,6 @@ from qgis.core import (
     QgsLayoutItemLabel,
     QgsLayoutItemMap,
     QgsLayoutItemTextTable,
-    QgsLayoutTable,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProject,
@@ -76,6 +75,35 @@ def cones(*offs):
     ]
 
 
+def pages_of(report, folder):
+    """Return the layouts of the report's pages."""
+    project = QgsProject()
+    project.setCrs(report.crs)
+    pages, found = ReportPages(report, project, folder), []
+    while pages.next():
+        found.append(pages.layout())
+    assert len(found) == pages.count()
+    return project, found
+
+
+def texts_of(layouts):
+    return "\n".join(
+        item.text() for layout in layouts for item in layout.items() if isinstance(item, QgsLayoutItemLabel)
+    )
+
+
+def tables_of(layouts):
+    """Return the table of each page that has one, and the texts of all their cells."""
+    tables = [
+        frame
+        for layout in layouts
+        for frame in layout.multiFrames()
+        if isinstance(frame, QgsLayoutItemTextTable)
+    ]
+    rows = [row for table in tables for row in table.contents()]
+    return tables, [[cell.content() if hasattr(cell, "content") else cell for cell in row] for row in rows]
+
+
 @pytest.fixture
 def run(provider, listener, tmp_path):
     """Run the algorithm into report.pdf and return what it gave."""
@@ -102,25 +130,23 @@ def test_figures_and_a_pdf(run, make_layer, tmp_path):
 
 
 def test_the_layout_says_it_all(qgis_app, tmp_path):
-    project, offs = QgsProject(), [(0.03, 0.04), (0.0, 0.1), (-0.3, 0.0)]
-    project.setCrs(QgsCoordinateReferenceSystem(UTM))
+    offs = [(0.03, 0.04), (0.0, 0.1), (-0.3, 0.0)]
     given = sorted(cones(*offs), key=lambda cone: -cone.deviation)
-    report = ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, project.crs())
-    layout = build_layout(report, project, tmp_path)
-    texts = "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
+    crs = QgsCoordinateReferenceSystem(UTM)
+    _project, layouts = pages_of(
+        ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, crs), tmp_path
+    )
+    texts = texts_of(layouts)
     assert "Slalom" in texts
     assert "2 of 3 cones (67 %) stand within 20 cm" in texts
     assert "EPSG:32633 - WGS 84 / UTM zone 33N" in texts
     assert "! beyond the tolerance of 20 cm" in texts
     assert "Slalom · 2 / 2" in texts
     assert "largest 30.0 cm" in texts
-    (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
-    contents = [
-        [cell.content() if hasattr(cell, "content") else cell for cell in row] for row in table.contents()
-    ]
+    (table,), contents = tables_of(layouts)
     assert contents[0] == ["c2", "slalom", "r1", "", "640460.00", "5193500.00", "-30.0", "+0.0", "30.0", "!"]
     assert [row[0] for row in contents] == ["c2", "c1", "c0"]
-    (shown,) = (item for item in layout.items() if isinstance(item, QgsLayoutItemMap))
+    (shown,) = (item for item in layouts[0].items() if isinstance(item, QgsLayoutItemMap))
     assert shown.extent().contains(extent_of(given))
     assert [layer.name() for layer in shown.layers()] == ["Deviations", "Planned", "Beyond", "Within"]
     # Nothing of the table beyond the paper's margins.
@@ -128,12 +154,11 @@ def test_the_layout_says_it_all(qgis_app, tmp_path):
 
 
 def text_of(given, tmp_path):
-    project = QgsProject()
-    project.setCrs(QgsCoordinateReferenceSystem(UTM))
-    layout = build_layout(
-        ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, project.crs()), project, tmp_path
+    crs = QgsCoordinateReferenceSystem(UTM)
+    _project, layouts = pages_of(
+        ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, crs), tmp_path
     )
-    return "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
+    return texts_of(layouts)
 
 
 def test_robots_stand_in_the_order_of_their_numbers_and_a_day_is_named_once(qgis_app, tmp_path):
@@ -159,21 +184,23 @@ def test_a_metre_is_told_in_metres_and_a_line_of_true_length_as_such(qgis_app, t
 def test_long_names_are_told_apart_on_every_page_of_the_table(qgis_app, tmp_path):
     names = [f"constant-radius-circle-{k:03d}" for k in range(100)]
     given = [replace(cones((0.01, 0.0))[0], name=name, layout="circle-of-a-hundred-metres") for name in names]
-    project = QgsProject()
-    report = ReportContent(
-        "Circle", given, cone_deviations(given, 0.2), 0.2, QgsCoordinateReferenceSystem(UTM)
+    crs = QgsCoordinateReferenceSystem(UTM)
+    _project, layouts = pages_of(
+        ReportContent("Circle", given, cone_deviations(given, 0.2), 0.2, crs), tmp_path
     )
-    layout = build_layout(report, project, tmp_path)
-    (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
-    letters = widths_of(layout, table.contentTextFormat())
-    contents = [
-        [cell.content() if hasattr(cell, "content") else cell for cell in row] for row in table.contents()
-    ]
+    tables, contents = tables_of(layouts)
+    assert len(tables) == 2
+    (columns,) = {tuple(column.width() for column in table.columns()) for table in tables}
+    letters = widths_of(layouts[1], tables[0].contentTextFormat())
     for row in contents:
-        assert all(letters(text) <= column.width() for text, column in zip(row, table.columns(), strict=True))
+        assert all(letters(text) <= width for text, width in zip(row, columns, strict=True))
     assert [row[0][-3:] for row in contents] == [name[-3:] for name in names]
-    assert sum(column.width() for column in table.columns()) == pytest.approx(164.0)
-    assert table.headerMode() == QgsLayoutTable.HeaderMode.AllFrames
+    assert sum(columns) == pytest.approx(164.0)
+    # None is continued where nobody sees it, and none would have room for another row.
+    assert [round(table.totalSize().height()) for table in tables] == [264, 264]
+    full = tables[0]
+    full.setContents([*full.contents(), full.contents()[0]])
+    assert full.totalSize().height() > 265
 
 
 @pytest.mark.parametrize(
@@ -234,9 +261,23 @@ def test_bars_end_at_the_tolerance_and_count_every_cone_once():
     assert "last bar: up to 500.00 m" in histogram(np.array([500.0, 0.1]), 0.2)
 
 
-def test_many_cones_take_more_pages(run, make_layer):
+def test_many_cones_take_more_pages_with_the_window_at_work_between_them(run, make_layer, listener):
+    """QGIS's dialog handles events, F10 and Cancel among them, at each progress."""
+    progress = []
+    listener.progressChanged.connect(progress.append)
     layer = make_layer("placed", "Point", FIELDS, rows(*[(0.01, 0.0)] * 200), crs=UTM)
-    assert run(INPUT=layer)["PAGE_COUNT"] >= 4
+    pages = run(INPUT=layer)["PAGE_COUNT"]
+    assert pages >= 4
+    assert len([percent for percent in progress if 50 <= percent < 100]) >= pages
+
+
+def test_a_report_is_cancelled_between_two_pages(provider, cancels_at, make_layer, tmp_path):
+    import processing
+
+    layer = make_layer("placed", "Point", FIELDS, rows(*[(0.01, 0.0)] * 200), crs=UTM)
+    parameters = {"INPUT": layer, "OUTPUT": str(tmp_path / "report.pdf")}
+    made = processing.run("fleet:asplacedreport", parameters, feedback=cancels_at(70))
+    assert "PAGE_COUNT" not in made and list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
