@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from datetime import datetime, timezone
 
 from qgis.core import QgsProject
-from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QComboBox,
     QHBoxLayout,
-    QTableWidget,
-    QTableWidgetItem,
+    QTableView,
     QVBoxLayout,
     QWidget,
 )
@@ -27,7 +26,7 @@ from ..ui.dialogs import file_to_write, push_button
 from ..ui.errors import FleetError
 from ..ui.language import time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
-from ..ui.tables import fit_headers, write_csv
+from ..ui.tables import EDGES, RowModel, fit_headers, write_csv
 
 # --- The as-placed report: planned and actual position of each cone, deviation, robot and time ---
 
@@ -148,12 +147,43 @@ MANY = 2000
 """Rows that the table shows at most, the newest; the CSV file has all."""
 
 
+WIDEST = ("constant-radius-00", "0.000", "robot-000", "2000-00-00 00:00:00", *["00000.00, 00000.00"] * 2, "")
+"""Texts for which the columns have room at first: they keep their width, whatever comes in."""
+
+
+class PlacedModel(RowModel):
+    """The rows of the table, the oldest first."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(HEADS, parent)
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        return _texts(self.rows[index.row()])[index.column()] if role == Qt.ItemDataRole.DisplayRole else None
+
+    def show_placed(self, rows: list[PlacementReport]) -> None:
+        """Show these cones; those that only follow the ones before are appended: a selection stays."""
+        gone = self.rows.index(rows[0]) if rows and rows[0] in self.rows else 0
+        kept = self.rows[gone:]
+        if not kept or rows[: len(kept)] != kept:
+            self.show_rows(rows, key=lambda one: one.placement)
+            return
+        if gone:
+            self.beginRemoveRows(QModelIndex(), 0, gone - 1)
+            self.rows = kept
+            self.endRemoveRows()
+        if len(rows) > len(kept):
+            self.beginInsertRows(QModelIndex(), len(kept), len(rows) - 1)
+            self.rows = rows
+            self.endInsertRows()
+
+
 class AsPlacedPage(QWidget):
     """Shows the cones placed of a plan, a layout or all, as known to the desk."""
 
     refresh_requested = pyqtSignal()
-    collect_requested = pyqtSignal(object)
-    """Request a plan that collects a layout (its name), or all standing cones (None)."""
+    collect_requested = pyqtSignal(object, object)
+    """Request a plan that collects a layout (its name), or all standing cones (None); and of those only the
+    placed cones of these numbers, a frozenset, or None for all."""
     shown = pyqtSignal()
     layer_requested = pyqtSignal()
     """The layer of the cones shown is about to be used, and must be complete."""
@@ -169,15 +199,18 @@ class AsPlacedPage(QWidget):
         self.which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.which.setMinimumContentsLength(8)
         self.figures = ScrollingText("fleet_placed_figures", lines=3)
-        self.table = QTableWidget(0, len(HEADS))
+        self.rows = PlacedModel(self)
+        self.table = QTableView()
         self.table.setObjectName("fleet_placed_table")
-        self.table.setHorizontalHeaderLabels(HEADS)
+        self.table.setModel(self.rows)
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(20)
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        letters = self.table.fontMetrics()
+        for column, widest in enumerate(WIDEST):
+            self.table.setColumnWidth(column, letters.horizontalAdvance(widest) + 2 * EDGES)
         fit_headers(self.table)
-        self.table.cellDoubleClicked.connect(self._go_there)
+        self.table.doubleClicked.connect(self._go_there)
         self.report = push_button(
             "fleet_placed_report",
             tr("Report…"),
@@ -201,13 +234,8 @@ class AsPlacedPage(QWidget):
         self.placements = self._chosen()
         expected = self._expected if self.which.currentData() == THIS_PLAN else None
         self.figures.setText(deviation_summary(self.placements).in_words(expected))
-        rows = self.placements[-MANY:]
-        self.table.setRowCount(len(rows))
-        for k, one in enumerate(rows):
-            for column, text in enumerate(_texts(one)):
-                self.table.setItem(k, column, QTableWidgetItem(text))
-        self.table.resizeColumnsToContents()
-        self.report.setEnabled(bool(rows))
+        self.rows.show_placed(self.placements[-MANY:])
+        self.report.setEnabled(bool(self.placements))
         self.shown.emit()
 
     def save(self, path: str) -> None:
@@ -246,11 +274,9 @@ class AsPlacedPage(QWidget):
 
     def _collect(self) -> None:
         what = self.which.currentData()
-        layouts = {one.layout for one in self.placements if one.layout}
-        if what == THIS_PLAN and len(layouts) == 1:
-            self.collect_requested.emit(layouts.pop())
-        else:
-            self.collect_requested.emit(what[1] if isinstance(what, tuple) else None)
+        # A layout may be in several plans, and a plan may have several layouts, or none.
+        only = frozenset(one.placement for one in self.placements) if what == THIS_PLAN else None
+        self.collect_requested.emit(what[1] if isinstance(what, tuple) else None, only)
 
     def _save_as(self) -> None:
         path = file_to_write(self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)"))
@@ -267,8 +293,8 @@ class AsPlacedPage(QWidget):
         except AsPlacedReportError as error:
             self._desk.report_failure(str(error), REPORT)
 
-    def _go_there(self, row: int, _: int) -> None:
-        one = self.placements[-MANY:][row]
+    def _go_there(self, index: QModelIndex) -> None:
+        one = self.rows.rows[index.row()]
         self.place_requested.emit(one.x, one.y)
 
     def _lay_out(self) -> None:

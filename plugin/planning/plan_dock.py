@@ -343,10 +343,13 @@ class PlanDock(ActionDock):
         dialog.confirmed.connect(lambda why: self._try(lambda: self.driven.override(refusal, why)))
         dialog.open()
 
-    def collect(self, layout: str | None) -> None:
-        """Plan the collection of a layout, or of all standing cones, unless a plan is being driven."""
+    def collect(self, layout: str | None, only: frozenset[int] | None = None) -> None:
+        """Plan the collection of a layout, or of all standing cones, unless a plan is being driven.
+
+        Of these ``only`` the placed cones of these numbers are collected, where that is not None.
+        """
         if self._make_room():
-            self._try(lambda: self.collecting.ask(CollectLayout(layout)))
+            self._try(lambda: self.collecting.ask(CollectLayout(layout), only))
 
     # --- Display ---
 

@@ -317,11 +317,16 @@ class CollectionPlanner(QObject):
         super().__init__(parent)
         self._desk, self._drafts = desk, drafts
         self._key: str | None = None
+        self._only: frozenset[int] | None = None
         desk.orders.answered.connect(self._answered)
         desk.state.forgotten.connect(self._forget)
 
-    def ask(self, request: CollectLayout) -> None:
-        """Request the cones to collect; raises NotSentError when that cannot be sent."""
+    def ask(self, request: CollectLayout, only: frozenset[int] | None = None) -> None:
+        """Request the cones to collect, of which the draft takes the placed cones ``only``, if given.
+
+        :raises NotSentError: when that cannot be sent.
+        """
+        self._only = only
         self._key = self._desk.orders.ask(request, tr("What is to be collected"))
 
     def _forget(self) -> None:
@@ -337,8 +342,11 @@ class CollectionPlanner(QObject):
         queued = int(answer.result.get("in_queues") or 0)
         try:
             tasks = [_task(values) for values in answer.result.get("tasks", [])]
+            if self._only is not None:
+                tasks = [task for task in tasks if task.placement in self._only]
             if not tasks:
-                self.refused.emit(_nothing(answer.order.params.get("layout"), queued))
+                layout = answer.order.params.get("layout")
+                self.refused.emit(_nothing(layout, queued) if self._only is None else _nothing_of_plan())
                 return
             self._drafts.make_collecting(tasks, preview=False)
         except (FleetError, MessageError, KeyError, TypeError, ValueError) as error:
@@ -352,6 +360,13 @@ def _nothing(layout: str | None, queued: int) -> str:
             "No cone of layout {layout} stands that could be collected{also}.", layout=layout, also=also
         )
     return tr("No cone stands that could be collected{also}.", also=also)
+
+
+def _nothing_of_plan() -> str:
+    return tr(
+        "No cone of this plan stands that could be collected: none was placed, or they are collected or in "
+        "queues already. For others choose a layout, or everything."
+    )
 
 
 def _task(values: dict[str, Any]) -> QueueTask:

@@ -6278,6 +6278,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />
+            <source>No cone of this plan stands that could be collected: none was placed, or they are collected or in queues already. For others choose a layout, or everything.</source>
+            <translation>No hi ha cap con d'aquest pla dret que es pugui recollir: no se n'ha col·locat cap, o ja s'han recollit o són en cues. Per als altres trieu una disposició, o tot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
             <source>No cone stands that could be collected{also}.</source>
             <translation>No hi ha cap con que es pugui recollir{also}.</translation>
         </message>

@@ -6278,6 +6278,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />
+            <source>No cone of this plan stands that could be collected: none was placed, or they are collected or in queues already. For others choose a layout, or everything.</source>
+            <translation>No hay ningún cono de este plan en pie que se pueda recoger: no se colocó ninguno, o ya se recogieron o están en colas. Para otros elija una disposición, o todo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
             <source>No cone stands that could be collected{also}.</source>
             <translation>No hay ningún cono que se pueda recoger{also}.</translation>
         </message>

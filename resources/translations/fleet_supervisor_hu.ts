@@ -6238,6 +6238,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />
+            <source>No cone of this plan stands that could be collected: none was placed, or they are collected or in queues already. For others choose a layout, or everything.</source>
+            <translation>A tervnek nincs álló bójája, amelyet be lehetne gyűjteni: egyet sem raktak le, vagy már begyűjtötték, vagy várólistán vannak. Másokhoz válasszon elrendezést vagy mindent.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
             <source>No cone stands that could be collected{also}.</source>
             <translation>Nincs begyűjthető bója{also}.</translation>
         </message>

@@ -8,7 +8,12 @@ import os
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.planning.as_placed import COLUMNS, deviation_summary, select_placed_cones
+from fleet_supervisor.plugin.planning.as_placed import (
+    COLUMNS,
+    PlacedModel,
+    deviation_summary,
+    select_placed_cones,
+)
 from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject
@@ -63,13 +68,13 @@ def page(panel, gateway, wait):
 
 
 def test_a_double_click_shows_the_place_or_why_it_cannot_be_shown(page, iface):
-    place = page.table.visualItemRect(page.table.item(0, 0)).center()
+    place = page.table.visualRect(page.rows.index(0, 0)).center()
 
     def double_click():
         QTest.mouseClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
         QTest.mouseDClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
 
-    one = page.placements[-1]
+    one = page.placements[0]
     double_click()
     middle = iface.canvas.center()
     assert (middle.x() - E, middle.y() - N) == pytest.approx((one.x, one.y))
@@ -157,9 +162,60 @@ def test_cones_placed_while_the_panel_was_closed_are_shown_when_it_opens(panel, 
     panel.close()
     gateway.tell("placement", to_json(placed(1)))
     wait(lambda: len(panel._desk.state.placed_cones) == 1, 10, "the placed cone")
-    assert panel.placed.table.rowCount() == 0
+    assert panel.placed.rows.rowCount() == 0
     panel.show()
-    assert panel.placed.table.rowCount() == 1
+    assert panel.placed.rows.rowCount() == 1
+
+
+def test_cones_that_come_in_leave_the_rows_before_them_as_they_are(qgis_app):
+    model, changes = PlacedModel(), []
+    model.modelReset.connect(lambda: changes.append("all"))
+    model.dataChanged.connect(lambda *_: changes.append("changed"))
+    model.rowsInserted.connect(lambda _, first, last: changes.append(("in", first, last)))
+    model.rowsRemoved.connect(lambda _, first, last: changes.append(("out", first, last)))
+    ones = [placed(number, f"c{number}") for number in range(6)]
+
+    def shown(rows):
+        changes.clear()
+        model.show_placed(rows)
+        assert [model.index(k, 0).data() for k in range(model.rowCount())] == [one.cone for one in rows]
+        return list(changes)
+
+    assert shown(ones[:3]) == ["all"]
+    assert shown(ones[:5]) == [("in", 3, 4)]
+    assert shown(ones[:5]) == []
+    assert shown(ones[2:]) == [("out", 0, 1), ("in", 3, 3)]
+    collected = [replace(ones[2], collected_at=1_700_000_060.0), *ones[3:]]
+    assert shown(collected) == ["changed"]
+    assert shown(ones[4:]) == [("out", 0, 1)]
+    assert shown([]) == ["all"]
+
+
+def test_of_the_plan_that_is_driven_its_cones_alone_are_collected(page, panel, gateway, wait):
+    """It may have several layouts, or none; and cones of its layout may be of another plan."""
+    ones = [placed(1), placed(2, layout="another"), placed(3, plan="before")]
+    gateway.answers["get_placements"] = lambda _: {"result": {"placements": [to_json(one) for one in ones]}}
+    press(panel, "fleet_placed_refresh")
+    wait(lambda: len(panel._desk.state.placed_cones) == 3, 10, "the placed cones")
+    page.show_plan("p", 2)
+    page.which.setCurrentIndex(page.which.findText("the plan that is driven"))
+    task = {"task": "t", "kind": "collect", "x": 75.0, "y": 40.0}
+    stands = [
+        {**task, "task": f"collected-{number}", "cone": f"c{number}", "placement": number}
+        for number in (1, 2, 3)
+    ]
+    gateway.answers["collect_layout"] = lambda params: {"result": {"tasks": stands, "in_queues": 0}}
+    made, refused = [], []
+    panel.collecting._drafts.make_collecting = lambda tasks, preview: made.append(tasks)
+    panel.collecting.refused.connect(refused.append)
+    press(panel, "fleet_placed_collect")
+    wait(lambda: made or refused, 3, "the draft")
+    assert refused == []
+    assert [one.placement for one in made.pop()] == [1, 2]
+    page.show_plan("q", 2)
+    press(panel, "fleet_placed_collect")
+    wait(lambda: refused, 10, "the refusal")
+    assert made == [] and refused[0].startswith("No cone of this plan stands that could be collected")
 
 
 def test_there_is_no_report_of_no_cone(panel, dialogs):
