@@ -107,9 +107,15 @@ def drives(positions: PositionArrays, gap: float, *, steps: bool = False) -> Ite
 
 # --- Stored positions, read from the input layer of an algorithm ---
 
+SPEED = "v"
+"""The field of the speed unless another one is given; layers of other programs may have none."""
+
 
 class PositionSource:
     """Points with a robot's name and a time in two fields, and optionally the speed in a third one.
+
+    ``odd_speeds`` is the number of values read of that one that are no numbers. The field :data:`SPEED` may
+    be missing: it is the default.
 
     :raises ParameterError: when a field does not exist.
     """
@@ -117,7 +123,8 @@ class PositionSource:
     def __init__(self, source: QgsProcessingFeatureSource, robot: str, time: str, speed: str) -> None:
         self._source = source
         names = source.fields().names()
-        for what, name in ((tr("robot"), robot), (tr("time"), time)):
+        speeds = () if speed in ("", SPEED) else ((tr("speed"), speed),)
+        for what, name in ((tr("robot"), robot), (tr("time"), time), *speeds):
             if name not in names:
                 raise ParameterError(
                     tr(
@@ -130,6 +137,7 @@ class PositionSource:
                 )
         self._robot, self._time = names.index(robot), names.index(time)
         self._speed = names.index(speed) if speed in names else None
+        self.odd_speeds = 0
 
     def read(self, feedback: QgsProcessingFeedback) -> tuple[PositionArrays, int] | None:
         """Return the positions, and the number of other features; None if cancelled."""
@@ -166,7 +174,9 @@ class PositionSource:
         if not (math.isfinite(point.x()) and math.isfinite(point.y())):
             return None
         speed = None if self._speed is None else feature.attribute(self._speed)
-        return time, point.x(), point.y(), float(speed) if isinstance(speed, (int, float)) else math.nan
+        is_number = isinstance(speed, (int, float))
+        self.odd_speeds += not is_number and speed not in (None, "")
+        return time, point.x(), point.y(), float(speed) if is_number else math.nan
 
 
 # --- The algorithm ---
@@ -227,7 +237,7 @@ class Trajectories(FleetAlgorithm):
             self.addParameter(QgsProcessingParameterField(name, title, default, INPUT, optional=True))
         self.addParameter(
             QgsProcessingParameterField(
-                SPEED_FIELD, tr("Field of the speed [m/s]"), "v", INPUT, optional=True
+                SPEED_FIELD, tr("Field of the speed [m/s]"), SPEED, INPUT, optional=True
             )
         )
         real = QgsProcessingParameterNumber.Type.Double
@@ -255,7 +265,8 @@ class Trajectories(FleetAlgorithm):
             names = [
                 self.parameterAsString(parameters, n, context) for n in (ROBOT_FIELD, TIME_FIELD, SPEED_FIELD)
             ]
-            read = PositionSource(source, *names).read(feedback)
+            positions_in = PositionSource(source, *names)
+            read = positions_in.read(feedback)
             if read is None:
                 return {}
             positions, odd = read
@@ -267,6 +278,7 @@ class Trajectories(FleetAlgorithm):
                         "%n features have no place, robot or time; they are left out.",
                     )
                 )
+            _warn_of_speeds(positions_in.odd_speeds, names[-1], feedback)
             metres = Metres(source.sourceCrs(), context.transformContext())
             made = self._write(parameters, context, feedback, source, positions, metres)
         if made is None:
@@ -282,7 +294,7 @@ class Trajectories(FleetAlgorithm):
             )
         )
         counts = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
-        return {OUTPUT: layer, **counts, "WARNING_COUNT": int(odd > 0)}
+        return {OUTPUT: layer, **counts, "WARNING_COUNT": int(odd > 0) + int(positions_in.odd_speeds > 0)}
 
     def _write(
         self,
@@ -313,6 +325,18 @@ class Trajectories(FleetAlgorithm):
                 rows = []
                 feedback.setProgress(min(99.0, 60.0 + 40.0 * done / max(len(positions), 1)))
         return (layer, lines, length) if fill_sink(sink, self._fields, rows, feedback) else None
+
+
+def _warn_of_speeds(odd: int, name: str, feedback: QgsProcessingFeedback) -> None:
+    if odd:
+        feedback.pushWarning(
+            tr_count(
+                odd,
+                "1 value of the field {name} is no number, and counts as no speed.",
+                "%n values of the field {name} are no numbers, and count as no speed.",
+                name=name,
+            )
+        )
 
 
 class Metres:

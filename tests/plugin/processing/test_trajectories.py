@@ -95,6 +95,18 @@ def test_each_drive_is_a_line_with_time_length_and_speed(run, positions, listene
     assert listener.warnings == ["2 features have no place, robot or time; they are left out."]
 
 
+def test_a_speed_that_is_no_field_or_no_number_is_said(run, positions, make_layer, listener):
+    with pytest.raises(QgsProcessingException, match="no field speed for the speed: they have robot"):
+        run(INPUT=positions, SPEED_FIELD="speed")
+    told, _ = run(INPUT=positions, SPEED_FIELD="robot")
+    assert "9 values of the field robot are no numbers" in listener.warnings[-1]
+    assert told["WARNING_COUNT"] == 2
+    # The default need not be there.
+    rows = [("Point(0 0)", "r1", 1.0), ("Point(3 0)", "r1", 2.0)]
+    bare = make_layer("bare", "Point", "&field=robot:string&field=time:double", rows, crs="EPSG:32633")
+    assert run(INPUT=bare)[1][0][0]["top_speed"] == 3.0
+
+
 def test_a_feature_of_several_points_is_no_position(run, make_layer, listener):
     rows = [
         ("MultiPoint((0 0))", "r1", 1.0),
