@@ -7624,6 +7624,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster</source>
+            <translation>El ràster</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster {file} cannot be written: QGIS reads rasters of this kind, and writes none. Give it a name that ends in .tif.</source>
+            <translation>El ràster {file} no es pot escriure: QGIS llegeix ràsters d'aquesta mena, i no n'escriu cap. Doneu-li un nom que acabi en .tif.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>The raster {file} cannot be written: {why}</source>
             <translation>No es pot escriure el ràster {file}: {why}</translation>
         </message>
@@ -8166,6 +8176,14 @@
             <translation>
                 <numerusform>%n posició</numerusform>
                 <numerusform>%n posicions</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>%n values of the field {name} are no numbers, and count as no speed.</source>
+            <translation>
+                <numerusform>%n valor del camp {name} no és un número, i no compta com a velocitat.</numerusform>
+                <numerusform>%n valors del camp {name} no són números, i no compten com a velocitat.</numerusform>
             </translation>
         </message>
         <message>

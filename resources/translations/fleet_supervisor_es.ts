@@ -7624,6 +7624,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster</source>
+            <translation>El ráster</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster {file} cannot be written: QGIS reads rasters of this kind, and writes none. Give it a name that ends in .tif.</source>
+            <translation>El ráster {file} no se puede escribir: QGIS lee rásteres de este tipo, y no escribe ninguno. Dele un nombre que termine en .tif.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>The raster {file} cannot be written: {why}</source>
             <translation>No se puede escribir el ráster {file}: {why}</translation>
         </message>
@@ -8166,6 +8176,14 @@
             <translation>
                 <numerusform>%n posición</numerusform>
                 <numerusform>%n posiciones</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>%n values of the field {name} are no numbers, and count as no speed.</source>
+            <translation>
+                <numerusform>%n valor del campo {name} no es un número, y no cuenta como velocidad.</numerusform>
+                <numerusform>%n valores del campo {name} no son números, y no cuentan como velocidad.</numerusform>
             </translation>
         </message>
         <message>

@@ -7576,6 +7576,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster</source>
+            <translation>A raszter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
+            <source>The raster {file} cannot be written: QGIS reads rasters of this kind, and writes none. Give it a name that ends in .tif.</source>
+            <translation>A(z) {file} raszter nem írható: a QGIS ilyen rasztert csak olvas. Adjon .tif végű nevet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>The raster {file} cannot be written: {why}</source>
             <translation>A(z) {file} raszter nem írható: {why}</translation>
         </message>
@@ -8106,6 +8116,13 @@
             <source>%n positions</source>
             <translation>
                 <numerusform>%n helyzet</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>%n values of the field {name} are no numbers, and count as no speed.</source>
+            <translation>
+                <numerusform>A(z) {name} mező %n értéke nem szám, és nem számít sebességnek.</numerusform>
             </translation>
         </message>
         <message>

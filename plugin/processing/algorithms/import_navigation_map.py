@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from ...ui.errors import FleetError
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
 from ..common.map_files import MapPlace, map_parameters, map_place
-from ..common.outputs import fill_sink
+from ..common.outputs import WholeFolder, fill_sink
 
 # --- Images of Nav2's maps read, and their cells converted to rasters and polygons, by GDAL ---
 
@@ -76,17 +76,29 @@ def read_image(file: Path) -> tuple[np.ndarray, bool]:
 
 
 def write_raster(file: Path, cells: np.ndarray, place: GeoTransform, crs: str) -> None:
-    """Write ``cells``, (rows, columns) int16, as a raster in the CRS given as WKT; raises MapImageError."""
+    """Write ``cells``, (rows, columns) int16, as a raster in the CRS given as WKT.
+
+    :raises MapImageError: naming the file, when it cannot be written.
+    """
     with _quiet() as gdal:
         driver = QgsRasterFileWriter.driverForExtension(file.suffix.lstrip(".")) or "GTiff"
         options = ["COMPRESS=DEFLATE", "TILED=YES"] if driver == "GTiff" else []
         rows, columns = cells.shape
+        known = gdal.GetDriverByName(driver)
+        if known is None or known.GetMetadataItem(gdal.DCAP_CREATE) is None:
+            raise MapImageError(
+                tr(
+                    "The raster {file} cannot be written: QGIS reads rasters of this kind, and writes none. "
+                    "Give it a name that ends in .tif.",
+                    file=file.name,
+                )
+            )
         try:
-            raster = gdal.GetDriverByName(driver).Create(str(file), columns, rows, 1, gdal.GDT_Int16, options)
+            raster = known.Create(str(file), columns, rows, 1, gdal.GDT_Int16, options)
             _fill(raster, cells, place, crs)
         except (AttributeError, RuntimeError):
             raise MapImageError(
-                tr("The raster {file} cannot be written: {why}", file=file, why=gdal.GetLastErrorMsg())
+                tr("The raster {file} cannot be written: {why}", file=file.name, why=gdal.GetLastErrorMsg())
             ) from None
 
 
@@ -229,16 +241,21 @@ class ImportNavigationMap(FleetAlgorithm):
             transform = _transform(described, cells, place)
             made: dict[str, Any] = {}
             raster = self.parameterAsOutputLayer(parameters, RASTER, context)
-            if raster:
-                write_raster(Path(raster), cells, transform, _wkt(place))
-                made[RASTER] = raster
-            feedback.setProgress(50)
-            level = self.parameterAsInt(parameters, OCCUPIED_FROM, context)
-            count = self._write_obstacles(
-                cells >= level, (file, described), transform, place, parameters, context, feedback, made
-            )
-            if feedback.isCanceled():
-                return {}
+            # Beside its place until all is done: an older one stays after an error or a cancel.
+            whole = WholeFolder(Path(raster).parent, tr("The raster")) if raster else None
+            with whole or nullcontext():
+                if whole is not None:
+                    write_raster(whole.folder / Path(raster).name, cells, transform, _wkt(place))
+                    made[RASTER] = raster
+                feedback.setProgress(50)
+                level = self.parameterAsInt(parameters, OCCUPIED_FROM, context)
+                count = self._write_obstacles(
+                    cells >= level, (file, described), transform, place, parameters, context, feedback, made
+                )
+                if feedback.isCanceled():
+                    return {}
+                if whole is not None:
+                    whole.publish()
         figures = int((cells >= level).sum()), int((cells == nav2_reader.UNKNOWN).sum()), count
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 

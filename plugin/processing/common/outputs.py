@@ -152,6 +152,11 @@ class WholeFolder:
     def __exit__(self, *error: Any) -> None:
         self._staged.__exit__(*error)
 
+    @property
+    def folder(self) -> Path:
+        """Where files are collected: those that programs write themselves are written there."""
+        return self._staged.folder
+
     def add(self, name: str, content: bytes) -> None:
         """Add ``content`` as the file ``name``."""
         if (self._staged.target / name).is_dir():

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.processing.algorithms import import_navigation_map
 from osgeo import gdal
 from PIL import Image
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
@@ -177,6 +178,37 @@ def test_a_map_that_cannot_be_read_is_named_and_nothing_is_written(run, grid, tm
     with pytest.raises(QgsProcessingException, match=named):
         run(file)
     assert not (tmp_path / "cells.tif").exists()
+
+
+@pytest.mark.parametrize("name", ["cells.png", "cells.asc"])
+def test_a_raster_that_nobody_writes_is_refused_with_the_name_to_give(run, grid, tmp_path, name):
+    with pytest.raises(QgsProcessingException, match=rf"The raster {name} .* a name that ends in \.tif"):
+        run(grid(), RASTER=str(tmp_path / name))
+
+
+def test_an_older_raster_stays_after_an_error_and_after_a_cancel(
+    provider, run, grid, cancels_at, tmp_path, monkeypatch
+):
+    import processing
+
+    file, older = grid(), tmp_path / "cells.tif"
+    older.write_bytes(b"older")
+    before = sorted(tmp_path.iterdir())
+    made = processing.run(
+        "fleet:importnavigationmap",
+        {"MAP": str(file), "RASTER": str(older), "OBSTACLES": "memory:"},
+        feedback=cancels_at(50),
+    )
+    assert "RASTER" not in made and older.read_bytes() == b"older"
+
+    def full(*_):
+        raise RuntimeError("no space left")
+
+    monkeypatch.setattr(import_navigation_map, "_fill", full)
+    with pytest.raises(QgsProcessingException, match=r"cells\.tif cannot be written"):
+        run(file)
+    assert older.read_bytes() == b"older"
+    assert sorted(tmp_path.iterdir()) == before
 
 
 def test_an_image_with_too_many_pixels_is_refused_before_it_is_read(run, grid, tmp_path):
