@@ -307,8 +307,9 @@ class History:
         if self._sorted is not None:
             return
         whole = np.concatenate(self._pages) if self._pages else np.empty((0, 6))
-        # They came oldest first: a stable sort by robots alone takes a tenth of the time.
-        whole = whole[np.argsort(whole[:, 0].astype(np.uint16), kind="stable")]
+        # They came oldest first: a stable sort by robots alone takes a tenth of the time, with 16 bits.
+        kind = np.uint16 if len(self.names) <= 1 << 16 else np.uint32
+        whole = whole[np.argsort(whole[:, 0].astype(kind), kind="stable")]
         self._first = np.searchsorted(whole[:, 0], np.arange(len(self.names) + 1))
         self._extents = _extents(whole, self._first[:-1])
         # Further pages are newer than these of the same robot, so that nothing is stored twice.

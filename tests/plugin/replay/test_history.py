@@ -51,6 +51,12 @@ def test_after_a_silence_a_robot_is_lost_where_it_was_and_does_not_slide_on(hist
     assert history.at(T0 + 70).xy[0].tolist() == [10.0, 5.0]
 
 
+def test_more_robots_than_16_bits_count_do_not_mix():
+    made, many = History(), (1 << 16) + 1
+    made.add([place(f"r{k}", 0, float(k)) for k in range(many)])
+    assert made.at(T0).xy[[0, 1, -1], 0].tolist() == [0.0, 1.0, float(many - 1)]
+
+
 def test_pages_in_any_number_give_the_same(history):
     whole, by_one = History(), History()
     rows = [place(f"r{k % 7}", k * 0.7, float(k), theta=k) for k in range(500)]
