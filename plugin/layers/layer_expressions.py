@@ -454,6 +454,10 @@ HEIGHT_FIELDS = ("height", "height_m")
 """Fields with a height in metres, used where no expression is given."""
 
 
+UNREADABLE = "\ufffd"
+"""In place of bytes that are no text in the encoding of a layer."""
+
+
 class ObstacleValues(NamedTuple):
     """The values of one feature in a robot map.
 
@@ -557,6 +561,13 @@ class FeatureValues:
 
     def _semantics_of(self, notes: list[str]) -> str:
         value = self._rules.value("semantics", self._semantics, notes)
+        if value is not None and UNREADABLE in str(value):
+            notes.append(
+                tr(
+                    "its label has letters that cannot be read: set the layer's encoding (Properties > "
+                    "Source), or put a .cpg file beside its shapefile"
+                )
+            )
         # A city has few different labels; equal ones share one object.
         return self._layer if value is None else sys.intern(str(value))
 

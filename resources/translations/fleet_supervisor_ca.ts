@@ -2394,6 +2394,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_expressions.py" />
+            <source>its label has letters that cannot be read: set the layer's encoding (Properties &gt; Source), or put a .cpg file beside its shapefile</source>
+            <translation>la seva etiqueta té lletres que no es poden llegir: definiu la codificació de la capa (Propietats &gt; Font), o poseu un fitxer .cpg al costat del shapefile</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_expressions.py" />
             <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
             <translation>el seu indicador d'exterior {value!r} no és ni cert ni fals; es fa servir cert</translation>
         </message>

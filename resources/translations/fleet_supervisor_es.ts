@@ -2394,6 +2394,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_expressions.py" />
+            <source>its label has letters that cannot be read: set the layer's encoding (Properties &gt; Source), or put a .cpg file beside its shapefile</source>
+            <translation>su etiqueta tiene letras que no se pueden leer: defina la codificación de la capa (Propiedades &gt; Fuente), o ponga un archivo .cpg junto al shapefile</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_expressions.py" />
             <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
             <translation>su indicador de exterior {value!r} no es ni verdadero ni falso; se usa verdadero</translation>
         </message>

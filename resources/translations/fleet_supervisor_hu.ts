@@ -2384,6 +2384,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_expressions.py" />
+            <source>its label has letters that cannot be read: set the layer's encoding (Properties &gt; Source), or put a .cpg file beside its shapefile</source>
+            <translation>a címkéjében olvashatatlan betűk vannak: állítsa be a réteg kódolását (Tulajdonságok &gt; Forrás), vagy tegyen .cpg fájlt a shapefile mellé</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_expressions.py" />
             <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
             <translation>a kültéri jelzője {value!r}, ami se nem igaz, se nem hamis; igaznak vesszük</translation>
         </message>

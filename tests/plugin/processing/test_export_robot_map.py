@@ -108,6 +108,13 @@ def test_a_rotated_site_gets_the_smallest_window_that_holds_the_extent(export, w
     assert done.map.border == (0, -50, 10, 0)
 
 
+def test_labels_whose_letters_cannot_be_read_are_named(export, wall):
+    """So QGIS may read a shapefile in another encoding whose .cpg is missing: it depends on its state."""
+    done = export(wall, CENTER="0,0", SEMANTICS_EXPRESSION="'caf\ufffd'")
+    (warning,) = done.warnings
+    assert "its label has letters that cannot be read: set the layer's encoding" in warning
+
+
 def test_expressions_give_height_label_and_place_and_the_layers_own_win(export, house, wall):
     set_expressions(wall, LayerExpressions(semantics="'wall,brick'"))
     done = export(
