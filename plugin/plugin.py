@@ -133,7 +133,7 @@ class FleetPlugin:
         from .planning.plan_dock import PlansAction
         from .replay.replay_dock import ReplayAction
         from .tour.tour_panel import TourAction
-        from .ui.actions import MenuLetters, PluginMenu, Shortcuts, keys_in
+        from .ui.actions import MenuLetters, PluginMenu, Shortcuts, emergency_keys_in, keys_in
 
         main = iface.mainWindow()
         # Before it contains the plugin's own widgets, which are thousands.
@@ -169,6 +169,8 @@ class FleetPlugin:
         for menu in ([*window.menu_entries(), *others], window.actions.for_drafts):
             # Letters may run out in a long menu: entries without a shortcut get one first.
             self._add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
+        for text in emergency_keys_in(taken):
+            notices.warning(text)
 
     def _add(self, part: Any):
         self._parts.append(part)

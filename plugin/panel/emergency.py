@@ -3,33 +3,47 @@
 from __future__ import annotations
 
 from qgis.core import QgsApplication
-from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
+from qgis.PyQt.QtCore import QEvent, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import QAction, QFrame, QHBoxLayout, QToolButton, QWidget
 
 from ...robot_bridge.core.messages.safety import EmergencyReport
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
+from ..ui.actions import EMERGENCY_KEYS
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import first_of, time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 
+KEY_EVENTS = (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress)
+BARE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+
 
 class EmergencyKey(QObject):
-    """Adds ``action`` to every dialog that blocks its window: Qt disables a blocked window's shortcuts."""
+    """Triggers ``action`` by its keys before any shortcut or widget is asked, also over a dialog.
+
+    Qt calls a key ambiguous that another action has as well, and then performs neither; and it disables the
+    shortcuts of a window that a dialog blocks.
+    """
 
     def __init__(self, action: QAction, parent: QObject):
         super().__init__(parent)
         self._action = action
-        QgsApplication.instance().focusWindowChanged.connect(self._add_to_dialog)
+        self._keys = [getattr(Qt.Key, f"Key_{key}") for key in EMERGENCY_KEYS]
+        QgsApplication.instance().installEventFilter(self)
 
     def remove(self) -> None:
-        """Stop adding the action to dialogs."""
-        QgsApplication.instance().focusWindowChanged.disconnect(self._add_to_dialog)
+        """Leave the keys to others."""
+        QgsApplication.instance().removeEventFilter(self)
 
-    def _add_to_dialog(self) -> None:
-        dialog = QApplication.activeModalWidget()
-        if dialog is not None and self._action not in dialog.actions():
-            dialog.addAction(self._action)
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        kind = event.type()
+        if kind not in KEY_EVENTS or event.key() not in self._keys or event.modifiers() not in BARE:
+            return False
+        # The first of the two, accepted, keeps the key from all shortcuts: it comes again as the second.
+        event.accept()
+        if kind == QEvent.Type.KeyPress and not event.isAutoRepeat():
+            self._action.trigger()
+        return True
 
 
 STYLE = (

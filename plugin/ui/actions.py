@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from qgis.core import QgsSettings
@@ -497,7 +497,7 @@ class Shortcuts:
     is left there. The keys of the emergency stop are not in the list: they must not be taken away.
     """
 
-    def __init__(self, window: QWidget, actions: Sequence[QAction], taken: Set[str]):
+    def __init__(self, window: QWidget, actions: Sequence[QAction], taken: Mapping[str, str]):
         """``taken`` are the keys that :func:`keys_in` finds in ``window`` before the plugin is in it."""
         self._window, self._manager = window, QgsGui.shortcutsManager()
         self._actions = list(actions)
@@ -520,10 +520,24 @@ class Shortcuts:
         self._actions = []
 
 
-def keys_in(window: QWidget) -> set[str]:
-    """Return the keys in use in ``window``."""
+def keys_in(window: QWidget) -> dict[str, str]:
+    """Return the keys in use in ``window``, each with the text of what has it."""
     # Both at once: PyQt makes an object for each child that it visits.
     having = window.findChildren((QAction, QShortcut))
-    keys = [key for one in having if isinstance(one, QAction) for key in one.shortcuts()]
-    keys += [one.key() for one in having if isinstance(one, QShortcut)]
-    return {key.toString() for key in keys}
+    actions = [one for one in having if isinstance(one, QAction)]
+    keys = {one.key().toString(): one.objectName() or "?" for one in having if isinstance(one, QShortcut)}
+    return keys | {key.toString(): one.text().replace("&", "") for one in actions for key in one.shortcuts()}
+
+
+def emergency_keys_in(taken: Mapping[str, str]) -> list[str]:
+    """Return a warning for each key of the emergency stop that is in ``taken``, from :func:`keys_in`."""
+    return [
+        tr(
+            "{key} is the key of the EMERGENCY STOP and does not perform {action}. Give that another key in "
+            "Settings > Keyboard Shortcuts.",
+            key=key,
+            action=taken[key],
+        )
+        for key in EMERGENCY_KEYS
+        if key in taken
+    ]

@@ -8,13 +8,17 @@ import sys
 import pytest
 from fleet_supervisor.plugin.panel import emergency
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
+from fleet_supervisor.plugin.plugin import FleetPlugin
+from fleet_supervisor.plugin.ui.actions import EMERGENCY_KEYS
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
 from fleet_supervisor.robot_bridge.core.messages.robots import SetPosEnd
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, StoppedGateways
 from qgis.PyQt.QtCore import QEvent, Qt
+from qgis.PyQt.QtGui import QKeyEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
+    QAction,
     QApplication,
     QDialog,
     QLabel,
@@ -218,12 +222,45 @@ def test_the_key_works_over_whatever_blocks_the_window(at_desk, gateway, iface, 
     assert dialog.isVisible()
 
 
-def test_an_unloaded_plugin_takes_its_key_out_of_open_dialogs(plugin, iface, wait):
-    dialog = opened_dialog(iface)
-    wait(lambda: [action.objectName() for action in dialog.actions()] == ["fleet_emergency_stop"])
+def test_an_unloaded_plugin_leaves_its_keys_to_others(plugin, iface, wait):
+    done = []
+    other = QAction("Other", iface, triggered=lambda: done.append("other"))
+    other.setShortcut("F10")
+    iface.addAction(other)
     plugin.unload()
     QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-    assert dialog.actions() == []
+    QTest.keyClick(iface, Qt.Key.Key_F10)
+    wait(lambda: done == ["other"], what="the other action")
+
+
+@pytest.mark.parametrize("key", EMERGENCY_KEYS)
+def test_the_key_stops_robots_once_even_if_another_action_has_it(at_desk, gateway, iface, wait, key):
+    done = []
+    other = QAction("Other", iface, triggered=lambda: done.append("other"))
+    other.setShortcut(key)
+    iface.addAction(other)
+    code = getattr(Qt.Key, f"Key_{key}")
+    # To the window as the window system does, and to a widget; held down it comes again and again.
+    QTest.keyClick(iface.windowHandle(), code)
+    QTest.keyClick(iface.canvas, code, Qt.KeyboardModifier.KeypadModifier)
+    none = Qt.KeyboardModifier.NoModifier
+    QApplication.sendEvent(iface, QKeyEvent(QEvent.Type.KeyPress, code, none, "", True))
+    QTest.keyClick(iface.canvas, code, Qt.KeyboardModifier.ShiftModifier)
+    at_desk.desk.orders.abort("r1")
+    wait(lambda: gateway.requests_of("send"), what="what was asked last")
+    assert len(gateway.requests_of("emergency_stop")) == 2 and done == []
+
+
+def test_who_has_a_key_of_the_stop_is_named_at_the_start(iface):
+    other = QAction("&Other tool", iface)
+    other.setShortcut("F10")
+    plugin = FleetPlugin(iface)
+    plugin.initGui()
+    try:
+        (text,) = iface.texts()
+        assert "F10 is the key of the EMERGENCY STOP and does not perform Other tool." in text
+    finally:
+        plugin.unload()
 
 
 def test_each_step_of_the_robots_is_shown(stopped, gateway, wait):
