@@ -56,8 +56,27 @@ OF_THEMES = 2
 """Pixels that QGIS's themes draw around heads and rows, and that are in no size hint."""
 
 
+class RobotSelectionModel(QItemSelectionModel):
+    """Signals each command of the operator, also one that changes no row: a hidden robot may be selected."""
+
+    commanded = pyqtSignal(bool)
+    """Rows were selected or deselected; whether all others were deselected."""
+
+    def select(self, what: QItemSelection | QModelIndex, command: QItemSelectionModel.SelectionFlag) -> None:
+        super().select(what, command)
+        flags = QItemSelectionModel.SelectionFlag
+        changing = flags.Clear | flags.Select | flags.Deselect | flags.Toggle
+        # A single index comes a second time, as a selection.
+        if isinstance(what, QItemSelection) and command & changing:
+            self.commanded.emit(bool(command & flags.Clear))
+
+
 class RobotTableView(QTableView):
-    """Shows the desk's robots; its selection and the desk's are the same."""
+    """Shows the desk's robots; its selection and the desk's are the same.
+
+    A click selects one robot alone. What adds to the selection or takes away from it leaves selected robots
+    as they are that the filter hides.
+    """
 
     zoom_requested = pyqtSignal(str)
     refreshed = pyqtSignal()
@@ -75,9 +94,11 @@ class RobotTableView(QTableView):
         self.positions = PositionCrs(desk.project, self)
         self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self, self)
         self.setModel(self._model)
+        chosen = RobotSelectionModel(self._model, self)
+        chosen.commanded.connect(self._selected_here)
+        self.setSelectionModel(chosen)
         self._model.modelReset.connect(self._reset)
         self._set_up()
-        self.selectionModel().selectionChanged.connect(self._selected_here)
         ZoomMenu(self).requested.connect(lambda index: self.zoom_requested.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
         desk.selection.changed.connect(self._selected_elsewhere)
@@ -214,16 +235,17 @@ class RobotTableView(QTableView):
         except MapTransformError:
             return tr("no such place")
 
-    def _selected_here(self) -> None:
-        rows = self.selectionModel().selectedRows()
-        if self._marking or not rows:
+    def _selected_here(self, is_alone: bool) -> None:
+        if self._marking:
             return
-        names = [self._name(index) for index in rows]
+        names = [self._name(index) for index in self.selectionModel().selectedRows()]
         # Drafts are made for the robot clicked last.
         current = self.currentIndex()
         last = self._name(current) if current.isValid() else ""
         names.sort(key=lambda name: name == last)
-        self._desk.selection.select_all(names)
+        others = self._desk.selection.robots
+        hidden = [] if is_alone else [name for name in others if not self._model.rows_of([name])]
+        self._desk.selection.select_all([*hidden, *names])
 
     def _selected_elsewhere(self) -> None:
         self._mark()

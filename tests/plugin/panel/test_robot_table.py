@@ -345,6 +345,45 @@ def test_a_selected_robot_that_the_filter_hides_stays_selected(table, at_desk):
     assert [table.model().name_at(i.row()) for i in table.selectionModel().selectedRows()] == ["r2"]
 
 
+def click_row(table, name, held=Qt.KeyboardModifier.NoModifier):
+    index = table.model().index(column(table, "Robot").index(name), 0)
+    QTest.mouseClick(table.viewport(), LEFT, held, table.visualRect(index).center())
+
+
+CTRL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
+
+
+def test_a_click_selects_one_robot_alone_even_if_others_are_hidden(table, at_desk):
+    at_desk.desk.selection.select_all(["r2", "r1"])
+    type_search(at_desk, "r2")
+    click_row(table, "r2")
+    assert at_desk.desk.selection.robots == ("r2",)
+
+
+@pytest.mark.parametrize("held", [CTRL, SHIFT], ids=["Ctrl", "Shift"])
+def test_what_adds_to_the_selection_keeps_hidden_robots_in_it(table, at_desk, held):
+    at_desk.desk.selection.select("r1")
+    type_search(at_desk, "r2")
+    click_row(table, "r2", held)
+    assert at_desk.desk.selection.robots == ("r1", "r2")
+
+
+def test_what_takes_away_from_the_selection_keeps_hidden_robots_in_it(table, at_desk):
+    at_desk.desk.selection.select_all(["r1", "r2"])
+    type_search(at_desk, "r2")
+    click_row(table, "r2", CTRL)
+    assert at_desk.desk.selection.robots == ("r1",)
+
+
+def test_the_last_robot_can_be_taken_out_of_the_selection(table, at_desk):
+    click_row(table, "r1")
+    click_row(table, "r1", CTRL)
+    assert at_desk.desk.selection.robots == ()
+    assert table.selectionModel().selectedRows() == []
+    QTest.keyClick(table, Qt.Key.Key_Space, CTRL)
+    assert at_desk.desk.selection.robots == ("r1",)
+
+
 def test_keys_move_the_selection(table, at_desk):
     at_desk.desk.selection.select("r1")
     QTest.keyClick(table, Qt.Key.Key_Down)
