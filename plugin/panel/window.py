@@ -21,7 +21,7 @@ from qgis.gui import (
     QgsCustomDropHandler,
 )
 from qgis.PyQt.QtCore import QEvent, QMimeData, QObject, Qt, QTimer, pyqtSignal
-from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow, QMenu, QToolBar
+from qgis.PyQt.QtWidgets import QAction, QDialog, QDockWidget, QMainWindow, QMenu, QToolBar
 
 from ...robot_bridge.core.messages.positions import AlarmLimits
 from ...robot_bridge.core.reconnection import FleetGateways
@@ -45,7 +45,7 @@ from ..map.tools.drawing_tools import ConeTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
 from ..settings.profile import KnownGateways
-from ..ui.actions import Actions
+from ..ui.actions import OURS, Actions
 from ..ui.dialogs import QuestionDialog
 from ..ui.errors import FleetError, Part, Removal, remove_all
 from ..ui.language import first_of, tr, tr_count
@@ -173,6 +173,7 @@ class FleetWindow(QObject):
         self.robot_pauses = PauseActions(self.desk, self.queue_edits, self.actions, self)
         self._wire_actions()
         self._place()
+        self._add(Removal(self._close_dialogs))
 
     def remove(self) -> None:
         """Remove every part from the window and wait for the connection's threads."""
@@ -190,6 +191,13 @@ class FleetWindow(QObject):
                     asked="; ".join(asked),
                 )
                 QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Critical)
+
+    def _close_dialogs(self) -> None:
+        """Close the plugin's dialogs without doing what they ask about: nobody would carry it out."""
+        for dialog in self._iface.mainWindow().findChildren(QDialog):
+            if dialog.objectName().startswith(OURS):
+                dialog.reject()
+                dialog.deleteLater()
 
     def _remove_tool(self, action: QAction) -> None:
         tool, canvas = self._tools.pop(action), self._iface.mapCanvas()

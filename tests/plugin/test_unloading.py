@@ -10,7 +10,8 @@ from fleet_supervisor.plugin.control.fleet_controller import FleetController
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import Qgis, QgsApplication, QgsProject, QgsVectorLayer
-from qgis.PyQt.QtWidgets import QAction, QLineEdit
+from qgis.PyQt.QtCore import QEvent
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDialog, QLineEdit, QPushButton
 
 from tests.support.left_behind import connected_to, left_behind
 
@@ -71,6 +72,31 @@ def test_a_part_of_the_desk_that_fails_at_its_end_keeps_no_other_from_ending(ifa
     with pytest.raises(RuntimeError, match="stands in the way"):
         desk.shut_down()
     assert not desk.connection.is_open and not desk.connection.is_ending
+
+
+def test_no_dialog_outlives_the_plugin(iface, gateway, make_robot, wait):
+    """Each asks about what nobody would do any more."""
+    gateway.show(make_robot("r1"))
+    plugin = connected(iface, gateway, wait)
+    window = plugin.window
+    window.desk.emergency_stop()
+    wait(lambda: window.desk.state.emergency.in_force, what="the stop")
+    window.actions.clear_emergency.trigger()
+    window.actions.closures.trigger()
+    iface.click(60, 50)
+    window.actions.route_preferences.trigger()
+    menu = window.dock.connection_panel.menu
+    menu.fill()
+    for name in ("fleet_keep_connection", "fleet_manage_connections"):
+        menu.menu.findChild(QAction, name).trigger()
+    window.dock.findChild(QPushButton, "fleet_alarm_limits").click()
+    opened = [one for one in iface.findChildren(QDialog) if one.isVisible()]
+    assert len(opened) == 6
+    plugin.unload()
+    assert [one.objectName() for one in opened if one.isVisible()] == []
+    QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert iface.findChildren(QDialog) == []
+    assert gateway.requests_of("close_road") == gateway.requests_of("clear_emergency_stop") == []
 
 
 def test_what_is_not_answered_when_the_plugin_goes_stands_in_qgis_log(iface, gateway, make_robot, wait):
