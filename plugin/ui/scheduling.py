@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 import threading
 import time
+import traceback
 from collections.abc import Callable, Generator
 from typing import Any, Generic, Protocol, TypeVar
 
-from qgis.core import QgsTask
+from qgis.core import Qgis, QgsMessageLog, QgsTask
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from .errors import FleetError
+from .language import tr
 
 # Long work in the window's thread is done in slices between which the window paints and handles the mouse.
 # QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
@@ -40,6 +42,17 @@ def _nothing(*_: object) -> None:
 def _raise(error: FleetError) -> None:
     """Raise an error that no callback handles."""
     raise error
+
+
+def _unexpected(error: Exception) -> FleetError:
+    """Return an error for the operator in place of one that the work should not raise, and log that one."""
+    trace = "".join(traceback.format_exception(error))
+    QgsMessageLog.logMessage(trace, "Fleet Supervisor", Qgis.MessageLevel.Critical)
+    text = tr(
+        "a fault of the plugin: {error}. View > Panels > Log Messages says where: report it.",
+        error=f"{type(error).__name__} {error}".strip(),
+    )
+    return FleetError(text)
 
 
 class CooperativeTask(QObject):
@@ -83,7 +96,8 @@ class CooperativeTask(QObject):
         ``goes_on`` is called after each later slice, then ``done`` with the result or ``failed`` with
         the error raised. Work under way before is given up.
 
-        :raises FleetError: an error in the first slice; ``failed`` is not called then.
+        :raises FleetError: an error in the first slice; ``failed`` is not called then. Any other exception
+            of the work is logged and becomes one.
         """
         self._set_work(work, goes_on, done, failed)
         return self._slice()[1]
@@ -160,10 +174,12 @@ class CooperativeTask(QObject):
             if is_selected:
                 self.stop()
             return is_selected, end.value
-        except BaseException:
+        except BaseException as error:
             if self._work is work:
                 self.stop()
-            raise
+            if isinstance(error, FleetError) or not isinstance(error, Exception):
+                raise
+            raise _unexpected(error) from error
         self._timer.start()
         return False, None
 

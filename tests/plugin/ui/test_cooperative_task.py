@@ -8,6 +8,7 @@ from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import FleetError
 from fleet_supervisor.plugin.ui.scheduling import ONE_STEP, CooperativeTask, scaled_progress
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from qgis.core import Qgis, QgsApplication
 from qgis.PyQt.QtCore import QTimer
 
 
@@ -131,6 +132,20 @@ def test_a_fault_that_nobody_expects_is_seen(diary):
     diary.slices.begin_soon(steps(1, FleetError("no")))
     with pytest.raises(FleetError, match="no"):
         diary.slices.finish()
+
+
+def test_a_fault_of_the_program_is_told_like_any_error_and_where_it_is_is_logged(diary):
+    logged = []
+    log = QgsApplication.messageLog().messageReceived[str, str, Qgis.MessageLevel]
+    log.connect(note := lambda text, *_: logged.append(text))
+    with pytest.raises(FleetError, match="a fault of the plugin: KeyError 'x'"):
+        diary.begin(steps(1, KeyError("x")))
+    diary.begin(steps(50, KeyError("y")))
+    diary.slices.finish()
+    log.disconnect(note)
+    assert diary.calls[-1][0] == "failed" and "a fault of the plugin: KeyError 'y'" in diary.calls[-1][1]
+    assert not diary.slices.is_busy
+    assert len(logged) == 2 and "in steps" in logged[0]
 
 
 @pytest.mark.parametrize("steps_after", [0, 1])
