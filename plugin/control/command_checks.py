@@ -25,7 +25,7 @@ from ..gateway_client.state_words import ROBOT_STATES
 from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
-from ..ui.language import age_in_words, tr
+from ..ui.language import tr
 from ..ui.scheduling import STALLED_AFTER, Steps, scaled_progress
 from .keepout_checks import (
     CheckedPath,
@@ -334,17 +334,18 @@ GONE = (RobotState.LOST, RobotState.OFFLINE)
 
 
 def check_last_seen(draft: PendingCommand, robot: RobotView | None) -> Findings:
-    """Warn where the draft's ``robot`` is silent: a message waits, or is not carried out."""
+    """Warn where the draft's ``robot`` is silent: a message waits, or is not carried out.
+
+    Without its age: the operator has seen the warning as long as it is the same text.
+    """
     if robot is None or robot.state not in GONE:
         return Findings()
     return Findings(
         warnings=(
             tr(
-                "{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that "
-                "is soon enough.",
+                "{robot} is {state}: it is told this when it is heard again, if that is soon enough.",
                 robot=draft.robot,
                 state=ROBOT_STATES[robot.state],
-                age=age_in_words(robot.age),
             ),
         )
     )

@@ -283,8 +283,9 @@ class FleetController(QObject):
         if not self.selection.robots:
             text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
             self.messages.post(text, Level.WARNING, messages.SELECTION)
-        for robot in self.selection.robots:
-            self._try(lambda robot=robot: self.orders.abort(robot))
+        self.orders.ask_each(
+            self.selection.robots, self.orders.abort, lambda names: tr("Abort of {robot}", robot=names)
+        )
         self._give_up_drafting()
 
     def abort_all(self) -> None:
@@ -325,15 +326,12 @@ class FleetController(QObject):
         Like all that stops robots, never refused here. Returns the keys of the requests sent, and the robot
         of each.
         """
-        asked = {}
-        for robot in robots:
+
+        def ask(robot: str) -> str:
             topic = messages.queue_state_topic(robot, self.state.queues.get(robot))
-            try:
-                key = self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot), topic)
-            except FleetError as error:
-                self.report_failure(str(error), *error.topics)
-            else:
-                asked[key] = robot
+            return self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot), topic)
+
+        asked = self.orders.ask_each(robots, ask, lambda names: tr("Pause of {robot}", robot=names))
         self.sending.withdraw()
         return asked
 

@@ -112,9 +112,16 @@ def file_topic(what: str) -> Topic:
     return Topic("file", what)
 
 
-def robot_topic(robot: str) -> Topic:
-    """Return the topic of a robot's activity: it ends when the robot receives another command."""
-    return Topic("robot", robot)
+class RobotCondition(NamedTuple):
+    """The activity of a robot that a message is about; ``asked`` are the commands requested before it."""
+
+    robot: str
+    asked: frozenset[str] = frozenset()
+
+
+def robot_topic(robot: str, asked: frozenset[str] = frozenset()) -> Topic:
+    """Return the topic of a robot's activity: it ends when the robot gets a command other than ``asked``."""
+    return Topic("robot", RobotCondition(robot, asked))
 
 
 class MessageBoard(QObject):
@@ -193,13 +200,16 @@ class MessageEndings(QObject):
 
     def commands_changed(self, reports: Sequence[CommandReport]) -> None:
         """End messages about robots that have received another command since."""
-        new = (report for report in reports if report.state is CommandState.QUEUED)
-        ordered = {report.robot for report in new if report.op != Abort.__name__}
-        self._messages.end(*map(robot_topic, ordered))
+        queued = [one for one in reports if one.state is CommandState.QUEUED and one.op != Abort.__name__]
+
+        def is_over(about: RobotCondition) -> bool:
+            return any(one.robot == about.robot and one.command not in about.asked for one in queued)
+
+        self._messages.end_where("robot", is_over)
 
     def robots_removed(self, robots: Collection[str]) -> None:
         """End messages about robots that no longer exist."""
-        self._messages.end_where("robot", lambda robot: robot in robots)
+        self._messages.end_where("robot", lambda about: about.robot in robots)
 
     def _queues_changed(self) -> None:
         """End messages about queues that were paused or continued since, or tasks done since."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
@@ -25,9 +26,9 @@ from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..gateway_client.request_outbox import REPEAT_WITHIN, moves_robots
 from ..ui.errors import NotSentError
-from ..ui.language import tr, tr_count
+from ..ui.language import first_of, tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
-from .pending_command import TARGETS, PendingCommand, Point
+from .pending_command import TARGETS, PendingCommand, Point, in_brief
 
 SLOW_AFTER = 5.0
 
@@ -126,12 +127,41 @@ def _may_wait_for_link(request: OperatorRequest) -> bool:
     return is_abort or request.method in (EmergencyStop.method, AbortAll.method)
 
 
-@dataclass
+MOST_NAMES = 6
+
+
+@dataclass(eq=False)
+class RequestGroup:
+    """The requests of one press for several robots: what fails of them is one message, ``words`` of names."""
+
+    words: Callable[[str], str]
+    failed: dict[Topic, tuple[str, str]] = field(default_factory=dict)
+    """By the topic of its request, the robot and the reason."""
+    is_sent: bool = False
+    """Whether one of those was sent, and then refused."""
+    text: str = ""
+    """The message, as it is shown."""
+    is_news: bool = False
+    """Whether more have failed than it says."""
+
+    def words_for(self, robots: Sequence[str]) -> str:
+        """Return what was requested for these robots."""
+        return self.words(", ".join(first_of(robots, MOST_NAMES)))
+
+    def in_words(self) -> str:
+        """Return what has failed so far, and why."""
+        words = self.words_for([robot for robot, _ in self.failed.values()])
+        why = in_brief(list(dict.fromkeys(why for _, why in self.failed.values())))
+        return f"{words}: {why}" if self.is_sent else _not_sent(words, why)
+
+
+@dataclass(eq=False)
 class PendingRequest:
     """A request without an answer yet: its text, and the draft it came from."""
 
     words: str
     requested_at: float
+    robot: str = ""
     draft: PendingCommand | None = None
     stops: bool = False
     is_voidable: bool = False
@@ -139,6 +169,7 @@ class PendingRequest:
     slow_notice: str = ""
     topics: tuple[Topic, ...] = ()
     """The subjects of a refusal."""
+    group: RequestGroup | None = None
 
 
 class RequestTracker(QObject):
@@ -167,6 +198,10 @@ class RequestTracker(QObject):
         self._sender = sender
         self._clock = clock
         self._pending: dict[str, PendingRequest] = {}
+        self._group: RequestGroup | None = None
+        """What the requests being made belong to."""
+        self._failing: list[RequestGroup] = []
+        """Groups of which a request has failed that was not made again."""
 
     def __len__(self) -> int:
         return len(self._pending)
@@ -176,10 +211,19 @@ class RequestTracker(QObject):
         """What was asked for and is not answered yet, in words, the oldest first."""
         return [pending.words for pending in self._pending.values()]
 
+    def unanswered_of(self, robot: str) -> frozenset[str]:
+        """Return the keys of the requests for ``robot`` that are not answered yet."""
+        return frozenset(key for key, pending in self._pending.items() if pending.robot == robot)
+
+    def expects_answer(self, robot: str) -> bool:
+        """Return whether the answer to a request for ``robot`` is due, and not late yet."""
+        return any(one.robot == robot and not one.slow_notice for one in self._pending.values())
+
     def forget_drafts(self) -> None:
         """Restore no draft that was sent before: its places are another site's."""
         for pending in self._pending.values():
             pending.draft = None
+        self._failing.clear()
 
     def send(self, draft: PendingCommand) -> str:
         """Send a draft and return the command's id.
@@ -251,6 +295,47 @@ class RequestTracker(QObject):
         """
         return self.submit(self._order(request), words, topics, draft)
 
+    def ask_each(
+        self, robots: Iterable[str], ask: Callable[[str], str], words: Callable[[str], str]
+    ) -> dict[str, str]:
+        """Call ``ask``, which sends a request and returns its key, for each robot; return keys and robots.
+
+        For several robots, all that is not sent or is refused is one message: ``words`` of their names, and
+        why. It is over when each of them has been asked for again.
+        """
+        names, asked = list(robots), {}
+        self._group = RequestGroup(words) if len(names) > 1 else None
+        try:
+            for robot in names:
+                try:
+                    asked[ask(robot)] = robot
+                except NotSentError as error:
+                    self._note_failure(self._group, robot, error)
+        finally:
+            self._group = None
+        self._report_groups()
+        return asked
+
+    def _note_failure(self, group: RequestGroup | None, robot: str, error: NotSentError) -> None:
+        if group is None:
+            self.refused.emit(str(error), None, error.topics)
+        else:
+            self._add_failure(group, error.topics[0], robot, str(error.__cause__))
+
+    def _add_failure(self, group: RequestGroup, topic: Topic, robot: str, why: str) -> None:
+        group.failed[topic], group.is_news = (robot, why), True
+        if group not in self._failing:
+            self._failing.append(group)
+
+    def _report_groups(self) -> None:
+        """Show what has failed since the last call, in place of the former message of the same press."""
+        for group in [one for one in self._failing if one.is_news]:
+            text = group.in_words()
+            if group.text:
+                self.resolved.emit(group.text)
+            group.text, group.is_news = text, False
+            self.refused.emit(text, None, ())
+
     def inquire(self, request: Any, *, lasting: bool = False) -> str:
         """Query the gateway without a message to the operator, and return the request's key.
 
@@ -285,8 +370,13 @@ class RequestTracker(QObject):
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
             return
-        if pending.slow_notice:
-            self.resolved.emit(pending.slow_notice)
+        notice = pending.slow_notice
+        if notice and not any(one.slow_notice == notice for one in self._pending.values()):
+            self.resolved.emit(notice)
+        if answer.error is not None and pending.group is not None:
+            pending.group.is_sent = True
+            self._add_failure(pending.group, pending.topics[0], pending.robot, str(answer.error))
+            return
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
             return
@@ -306,12 +396,24 @@ class RequestTracker(QObject):
             self.accepted.emit(tr("{words}: done", words=words))
 
     def watch(self) -> None:
-        """Warn once about each request that has waited too long for its answer."""
+        """Warn once about each request that has waited too long for its answer; report groups that failed.
+
+        To be called when answers have been handled.
+        """
+        self._report_groups()
         now = self._clock.steady()
+        late: dict[RequestGroup | PendingRequest, list[PendingRequest]] = {}
         for pending in self._pending.values():
             if not pending.slow_notice and now - pending.requested_at > SLOW_AFTER:
-                pending.slow_notice = _slow_notice(pending)
-                self.slow.emit(pending.slow_notice)
+                late.setdefault(pending.group or pending, []).append(pending)
+        for about, requests in late.items():
+            words = about.words
+            if isinstance(about, RequestGroup):
+                words = about.words_for([one.robot for one in requests])
+            notice = _slow_notice(requests[0], words)
+            for pending in requests:
+                pending.slow_notice = notice
+            self.slow.emit(notice)
 
     def _command(
         self,
@@ -335,23 +437,40 @@ class RequestTracker(QObject):
     ) -> str:
         topics = topics_of(order.method, order.params) + more
         self.retried.emit(topics[0])
+        self._forget_failure(topics[0])
         try:
             self._sender.submit(order)
         except NotSentError as error:
-            text = tr("{words} was NOT sent: {error}", words=words, error=error)
-            raise NotSentError(text, topics) from error
+            raise NotSentError(_not_sent(words, error), topics) from error
         self._pending[order.key] = PendingRequest(
-            words, order.requested_at, draft, is_voidable=moves_robots(order), topics=topics
+            words,
+            order.requested_at,
+            order.params.get("robot", ""),
+            draft,
+            is_voidable=moves_robots(order),
+            topics=topics,
+            group=self._group,
         )
         return order.key
 
+    def _forget_failure(self, topic: Topic) -> None:
+        for group in self._failing:
+            group.failed.pop(topic, None)
+        for group in [one for one in self._failing if not one.failed]:
+            self._failing.remove(group)
+            self.resolved.emit(group.text)
 
-def _slow_notice(pending: PendingRequest) -> str:
+
+def _not_sent(words: str, why: object) -> str:
+    return tr("{words} was NOT sent: {error}", words=words, error=why)
+
+
+def _slow_notice(pending: PendingRequest, words: str) -> str:
     if pending.stops:
         return tr(
             "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
             "arrived. It is repeated when the link is back; it is never done twice.",
-            words=pending.words,
+            words=words,
             seconds=SLOW_AFTER,
         )
     if pending.is_voidable:
@@ -359,14 +478,14 @@ def _slow_notice(pending: PendingRequest) -> str:
             "{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is "
             "repeated if the link is back within {limit:g} s, unless robots are asked to stop meanwhile; "
             "it is never done twice.",
-            words=pending.words,
+            words=words,
             seconds=SLOW_AFTER,
             limit=REPEAT_WITHIN,
         )
     return tr(
         "{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated "
         "if the link is back within {limit:g} s; it is never done twice.",
-        words=pending.words,
+        words=words,
         seconds=SLOW_AFTER,
         limit=REPEAT_WITHIN,
     )

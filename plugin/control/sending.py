@@ -31,7 +31,8 @@ class OutgoingCommand(NamedTuple):
 class OutgoingCommands(QObject):
     """Checks drafts afresh one after the other, in the order of the presses, beside the draft on the map.
 
-    The next one is checked when the one before has been sent: its target counts for the others.
+    The next one is checked when the one before has been sent: its target counts for the others. It also waits
+    while the gateway's answer about its robot is due: a queue has another revision by then.
     """
 
     changed = pyqtSignal()
@@ -39,11 +40,13 @@ class OutgoingCommands(QObject):
     failed = pyqtSignal(object, str)
     """A draft cannot be checked: the PendingCommand, and why."""
 
-    def __init__(self, work: Work, parent: QObject | None = None):
+    def __init__(self, work: Work, orders: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._work = work
+        self._work, self._orders = work, orders
         self._waiting: deque[OutgoingCommand] = deque()
         self._slices = CooperativeTask(self)
+        for signal in (orders.answered, orders.slow):
+            signal.connect(self._stop_waiting)
 
     def __len__(self) -> int:
         return len(self._waiting)
@@ -79,14 +82,23 @@ class OutgoingCommands(QObject):
             self.changed.emit()
         return drafts
 
+    def _stop_waiting(self, *_: object) -> None:
+        if self._waiting and not self._slices.is_busy:
+            self._check_first()
+
     def _check_first(self) -> None:
+        self._slices.stop()
+        if self._orders.expects_answer(self._waiting[0].draft.robot):
+            return
         # Never within the press that added it: the draft on the map is not settled yet.
         work = self._work(self._waiting[0].draft, True)
         self._slices.begin_soon(work, self._checked, self._cannot_be_checked)
 
     def _checked(self, draft: PendingCommand) -> None:
-        self._waiting.popleft().then(draft)
-        self._continue()
+        try:
+            self._waiting.popleft().then(draft)
+        finally:
+            self._continue()
 
     def _cannot_be_checked(self, error: FleetError) -> None:
         self.failed.emit(self._waiting.popleft().draft, str(error))
@@ -123,7 +135,7 @@ class CommandSender(QObject):
         super().__init__(parent)
         self._drafts, self._checks, self._ways, self._orders = drafts, checks, ways, orders
         self._awaits_way: PendingCommand | None = None
-        self.outgoing = OutgoingCommands(checks.work, self)
+        self.outgoing = OutgoingCommands(checks.work, orders, self)
         self._pressed: tuple[PendingCommand, float] | None = None
         """The draft sent by the last press, and when."""
         self.outgoing.failed.connect(self._not_checked)
@@ -206,7 +218,8 @@ class CommandSender(QObject):
     def order(self, order: Callable[[PendingCommand], None]) -> None:
         """Check the draft on the map afresh, then call ``order`` with it.
 
-        Not if it was changed by then, nor if the operator has not seen its present warnings.
+        Not if it was changed by then, nor if the operator has not seen its present warnings. When ``order``
+        raises a FleetError, that is reported, and the draft is on the map again.
 
         :raises FleetError: when it cannot be checked, or was not asked for now.
         """
@@ -261,24 +274,23 @@ class CommandSender(QObject):
         self, draft: PendingCommand, known: tuple[str, ...], order: Callable[[PendingCommand], None]
     ) -> None:
         unseen = [text for text in draft.findings.warnings if text not in known]
-        if not unseen or draft.fault:
-            order(draft)
+        if unseen and not draft.fault:
+            text = tr(
+                "{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send "
+                "it all the same.",
+                in_words=draft.in_words(),
+                warnings=in_brief(unseen),
+            )
+            self._refused(text, draft)
             return
-        text = tr(
-            "{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send "
-            "it all the same.",
-            in_words=draft.in_words(),
-            warnings=in_brief(unseen),
-        )
-        self._fail(text, draft)
+        try:
+            order(draft)
+        except FleetError as error:
+            self._refused(str(error), draft, error.topics)
 
     def _send(self, draft: PendingCommand) -> None:
-        try:
-            self._orders.send(draft)
-        except FleetError as error:
-            self._fail(str(error), draft, error.topics)
-        else:
-            self.clear(draft)
+        self._orders.send(draft)
+        self.clear(draft)
 
     def _not_checked(self, draft: PendingCommand, why: str) -> None:
         self._refused(tr("{in_words} was not sent: {error}", in_words=draft.in_words(), error=why), draft)
@@ -288,11 +300,11 @@ class CommandSender(QObject):
             "{in_words} was not sent: the draft was changed before it had been checked. Send it anew.",
             in_words=draft.in_words(),
         )
-        self.failed.emit(text, (robot_topic(draft.robot),))
+        self.failed.emit(text, (self._robot_topic(draft),))
 
     def _refused(self, text: str, draft: PendingCommand | None, topics: tuple[Topic, ...] = ()) -> None:
         if draft is not None and self._drafts.draft is None:
-            # A draft must not be lost because a gateway refused it.
+            # A draft must not be lost because it was not sent.
             self._drafts.set_command(draft)
         self._fail(text, draft, topics)
 
@@ -302,5 +314,8 @@ class CommandSender(QObject):
         if draft is not None and on_map is not None and on_map.place == draft.place:
             topics = (*topics, draft_topic(draft.place))
         elif draft is not None:
-            topics = (*topics, robot_topic(draft.robot))
+            topics = (*topics, self._robot_topic(draft))
         self.failed.emit(text, topics)
+
+    def _robot_topic(self, draft: PendingCommand) -> Topic:
+        return robot_topic(draft.robot, self._orders.unanswered_of(draft.robot))

@@ -279,7 +279,7 @@ class PendingCommandActions(QObject):
         if self._desk.sending.is_second_press():
             return
         self._draft()
-        self._desk.sending.order(lambda draft: self._try(lambda: self._add(draft)))
+        self._desk.sending.order(self._add)
 
     def _add(self, draft: PendingCommand) -> None:
         draft = draft.as_task()
@@ -291,10 +291,9 @@ class PendingCommandActions(QObject):
                     fault=draft.fault,
                 )
             )
-        self._edits.check_answered(draft.robot)
         words = tr("{in_words}, into the queue", in_words=draft.in_words())
-        if self._edits.add(draft.robot, queue_tasks(draft), words, draft.override, draft) is not None:
-            self._desk.sending.clear(draft)
+        self._edits.add(draft.robot, queue_tasks(draft), words, draft.override, draft)
+        self._desk.sending.clear(draft)
 
     def _override(self) -> None:
         draft = self._draft()
@@ -312,7 +311,8 @@ class PendingCommandActions(QObject):
         dialog.open()
 
     def _overridden(self, draft: PendingCommand, text: str) -> None:
-        if self._desk.drafts.draft is not draft:
+        now, seen = self._desk.drafts.draft, draft.findings.overridable
+        if now is None or (now.place, now.findings.overridable) != (draft.place, seen):
             self._desk.warning.emit(
                 tr(
                     "The draft has changed since it was looked at, so nothing was overridden. Press "
@@ -320,7 +320,7 @@ class PendingCommandActions(QObject):
                 )
             )
             return
-        self._desk.drafts.renew(replace(draft, override=text))
+        self._desk.drafts.renew(replace(now, override=text))
 
     def _draft_from_layer(self) -> None:
         self._check_free()
@@ -356,8 +356,11 @@ class PendingCommandActions(QObject):
     def _send_maps(self) -> None:
         if not self._desk.selection.robots:
             raise NotSentError(tr("No robot is selected, so none was sent the map. Select it first."))
-        for robot in self._desk.selection.robots:
-            self._desk.orders.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
+        self._desk.orders.ask_each(
+            self._desk.selection.robots,
+            lambda robot: self._desk.orders.ask(SendMap(robot), tr("Map for {robot}", robot=robot)),
+            lambda names: tr("Map for {robot}", robot=names),
+        )
 
     def _draft(self) -> PendingCommand:
         draft = self._desk.drafts.draft

@@ -32,7 +32,7 @@ from ...robot_bridge.core.messages.queues import (
     TaskState,
 )
 from ..control.fleet_controller import FleetController
-from ..control.messages import QueueCondition, Topic, draft_topic, queue_state_topic, queue_topic
+from ..control.messages import Level, QueueCondition, Topic, queue_state_topic, queue_topic
 from ..control.pending_command import PendingCommand
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.state_words import (
@@ -48,7 +48,7 @@ from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
 from ..ui.tables import RowModel, ZoomMenu, shrink_view
 
-QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
+QueueRequest = MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
 
 CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
 PERHAPS_DONE = tr(
@@ -59,8 +59,8 @@ PERHAPS_DONE = tr(
 class QueueEdits(QObject):
     """Requests changes at the revision shown, so that no other operator's change is overwritten unseen.
 
-    Each method for one queue returns the request's key, None when it could not be sent: then the desk has
-    reported why.
+    Each method that changes one queue, but :meth:`add`, returns the request's key, None when it could not be
+    sent: then the desk has reported why.
     """
 
     changed = pyqtSignal()
@@ -100,13 +100,18 @@ class QueueEdits(QObject):
         words: str,
         override: str | None = None,
         draft: PendingCommand | None = None,
-    ) -> str | None:
+    ) -> str:
         """Append tasks to a robot's queue; ``words`` describe them, ``override`` as in AddTasks.
 
-        The ``draft`` that they were made from is restored by a refusal.
+        The ``draft`` that they were made from is restored by a refusal. Returns the request's key.
+
+        :raises NotSentError: when it cannot be sent, or an answer about this queue is due.
         """
+        self.check_answered(robot)
         request = AddTasks(robot, self._revision(robot), list(tasks), override=override)
-        return self._change(request, words, draft=draft)
+        key = self._desk.orders.ask(request, words, draft=draft)
+        self._record(key, robot)
+        return key
 
     def move(self, robot: str, task: str, before: str | None) -> str | None:
         """Move a task in front of task ``before``, or to the end."""
@@ -127,42 +132,48 @@ class QueueEdits(QObject):
     def pause(self, robot: str) -> str | None:
         """Pause a queue: the robot is sent no further task."""
         words = tr("Pausing the queue of {robot}", robot=robot)
-        return self._change(PauseQueue(robot), words, self._state(robot))
+        return self._change(PauseQueue(robot), words, self.state_topic(robot))
 
     def pause_robots(self, robots: Iterable[str]) -> None:
         """Make robots stand, and keep their tasks."""
         for key, robot in self._desk.pause_robots(robots).items():
             self._record(key, robot)
 
-    def go_on(self, queue: QueueReport) -> str | None:
-        """Continue a queue at its head, which is named in the message."""
-        words = tr("{robot} continues", robot=queue.robot)
-        if queue.tasks:
-            words = tr("{robot} continues with {task}", robot=queue.robot, task=task_in_words(queue.tasks[0]))
-        return self._change(ResumeQueue(queue.robot, queue.revision), words, self._state(queue.robot))
+    def go_on(self, queues: Sequence[QueueReport]) -> None:
+        """Continue queues, each at its head, which is named in the message."""
+        of = {queue.robot: queue for queue in queues}
+
+        def ask(robot: str) -> str:
+            queue, words = of[robot], tr("{robot} continues", robot=robot)
+            if queue.tasks:
+                words = tr("{robot} continues with {task}", robot=robot, task=task_in_words(queue.tasks[0]))
+            request = ResumeQueue(robot, queue.revision)
+            return self._desk.orders.ask(request, words, self.state_topic(robot))
+
+        asked = self._desk.orders.ask_each(of, ask, lambda names: tr("Continue for {robots}", robots=names))
+        for key, robot in asked.items():
+            self._record(key, robot)
 
     def resume(self, robot: str) -> str | None:
         """Continue a paused queue."""
         words = tr("Resuming the queue of {robot}", robot=robot)
-        return self._change(ResumeQueue(robot, self._revision(robot)), words, self._state(robot))
+        return self._change(ResumeQueue(robot, self._revision(robot)), words, self.state_topic(robot))
 
     def _revision(self, robot: str) -> int:
         return self._desk.state.queues.revision(robot)
 
-    def _state(self, robot: str) -> Topic:
+    def state_topic(self, robot: str) -> Topic:
+        """Return the topic of a queue: it ends when its state changes."""
         return queue_state_topic(robot, self._desk.state.queues.get(robot))
 
     def _waiting(self, robot: str, task: str) -> Topic:
         return queue_topic(QueueCondition(robot, task=task))
 
-    def _change(
-        self, request: QueueRequest, words: str, *topics: Topic, draft: PendingCommand | None = None
-    ) -> str | None:
+    def _change(self, request: QueueRequest, words: str, *topics: Topic) -> str | None:
         try:
-            key = self._desk.orders.ask(request, words, *topics, draft=draft)
+            key = self._desk.orders.ask(request, words, *topics)
         except FleetError as error:
-            about = () if draft is None else (draft_topic(draft.place),)
-            self._desk.report_failure(str(error), *error.topics, *about)
+            self._desk.report_failure(str(error), *error.topics)
             return None
         self._record(key, request.robot)
         return key
@@ -213,8 +224,7 @@ class PauseActions(QObject):
         self._edits.pause_robots(self._desk.selection.robots)
 
     def _continue(self) -> None:
-        for queue in self._paused():
-            self._edits.go_on(queue)
+        self._edits.go_on(self._paused())
 
     def _paused(self) -> list[QueueReport]:
         queues = (self._desk.state.queues.get(robot) for robot in self._desk.selection.robots)
@@ -226,6 +236,8 @@ class PauseActions(QObject):
 
 COLUMNS = ("", tr("Task"), tr("State"))
 MIME = "application/x-fleet-task"
+DEAD_TIME = 1.0
+"""Seconds for which a click does not resume a queue that another operator has paused: it may mean *Pause*."""
 NUMBER, TASK, STATE = range(3)
 
 
@@ -395,6 +407,11 @@ class QueuePanel(QWidget):
         self._conflict = ElidedText("fleet_queue_conflict")
         self._conflict.setStyleSheet(WRONG_STYLE)
         self._last = ElidedText("fleet_queue_last")
+        self._shown_hold: tuple[str | None, bool] = (None, False)
+        """The robot that the button pauses or resumes, and whether it resumes it."""
+        self._pressed_hold = self._shown_hold
+        self._resumes_from = 0.0
+        """The time on the desk's clock from which a click may resume it."""
         self._foot = QStackedWidget()
         """The conflict while there is one; else the task that ended last."""
         self.list = TaskList()
@@ -442,6 +459,7 @@ class QueuePanel(QWidget):
         self._down.clicked.connect(lambda: self._step(2))
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))
         self._first.clicked.connect(lambda: self._chosen(self._edits.make_current))
+        self._hold.pressed.connect(self._note_pressed)
         self._hold.clicked.connect(self._hold_or_resume)
         self._desk.state.queues_changed.connect(self._show)
         self._edits.changed.connect(self._show)
@@ -465,6 +483,7 @@ class QueuePanel(QWidget):
         for button in (self._up, self._down, self._remove, self._first):
             button.setEnabled(movable)
         paused = queue is not None and queue.state is QueueState.PAUSED
+        self._note_hold(self._desk.selection.last, paused)
         self._hold.setText(tr("Resume") if paused else tr("Pause"))
         self._hold.setToolTip(
             tr("Let the robot go on with the task at the head of its queue")
@@ -526,11 +545,32 @@ class QueuePanel(QWidget):
         else:
             edit(robot, *how)
 
+    def _note_hold(self, robot: str | None, resumes: bool) -> None:
+        """Note what the button does now, and whether the operator could expect that."""
+        before, self._shown_hold = self._shown_hold, (robot, resumes)
+        if self._shown_hold != before:
+            is_unexpected = resumes and robot == before[0] and not self._edits.awaits_answer(robot or "")
+            self._resumes_from = self._desk.clock.steady() + DEAD_TIME if is_unexpected else 0.0
+
+    def _note_pressed(self) -> None:
+        """Note what the button says: another operator's change may come before the mouse is released."""
+        self._pressed_hold = self._shown_hold
+
     def _hold_or_resume(self) -> None:
-        queue, robot = self._queue(), self._desk.selection.last
-        if robot is not None:
-            resumes = queue is not None and queue.state is QueueState.PAUSED
-            (self._edits.resume if resumes else self._edits.pause)(robot)
+        robot, resumes = self._pressed_hold
+        if robot is None:
+            return
+        if not resumes:
+            self._edits.pause(robot)
+        elif self._desk.clock.steady() < self._resumes_from:
+            text = tr(
+                "The queue of {robot} was paused just before the click, so it was not resumed. Press Resume "
+                "again to let it continue.",
+                robot=robot,
+            )
+            self._desk.messages.post(text, Level.WARNING, self._edits.state_topic(robot))
+        else:
+            self._edits.resume(robot)
 
     def _go(self, row: int) -> None:
         task = self.list.tasks.tasks[row]

@@ -1133,8 +1133,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, se'n va saber per darrer cop fa {age}: rebrà això quan se'n torni a saber, si és prou aviat.</translation>
+            <source>{robot} is {state}: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}; rebrà això quan se'n torni a saber, si és prou aviat.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
@@ -1190,6 +1190,11 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
             <translation>{text!r}: la latitud {lat:g} i la longitud {lon:g} no són a la Terra; escriviu abans la latitud, o trieu el SRC en què són els nombres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
+            <source>Abort of {robot}</source>
+            <translation>Avortar {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1403,11 +1408,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>ABORT ALL</source>
             <translation>AVORTA-HO TOT</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/request_tracker.py" />
-            <source>Abort of {robot}</source>
-            <translation>Avortar {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -5078,6 +5078,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>Continue for {robots}</source>
+            <translation>Continua per a {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>Do now</source>
             <translation>Fes ara</translation>
         </message>
@@ -5175,6 +5180,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
             <translation>L'enllaç s'ha perdut abans de la resposta, i la cua ha canviat, potser per això. Ara està així.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The queue of {robot} was paused just before the click, so it was not resumed. Press Resume again to let it continue.</source>
+            <translation>La cua de {robot} s'ha posat en pausa just abans del clic, de manera que no s'ha reprès. Premeu Reprèn un altre cop perquè continuï.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
@@ -10037,9 +10047,19 @@
             <translation>Camins per vies…</translation>
         </message>
         <message>
+            <location filename="../../plugin/ui/actions.py" />
+            <source>{key} is the key of the EMERGENCY STOP and does not perform {action}. Give that another key in Settings &gt; Keyboard Shortcuts.</source>
+            <translation>{key} és la tecla de la PARADA D'EMERGÈNCIA i no executa {action}. Doneu-li una altra tecla a Configuració &gt; Dreceres de teclat.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, últim missatge fa {age} per {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/scheduling.py" />
+            <source>a fault of the plugin: {error}. View &gt; Panels &gt; Log Messages says where: report it.</source>
+            <translation>una fallada del connector: {error}. Visualitza &gt; Taulers &gt; Missatges de registre diu on: informeu-ne.</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/tables.py" />

@@ -1133,8 +1133,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, se supo de él por última vez hace {age}: recibirá esto cuando se vuelva a saber de él, si es lo bastante pronto.</translation>
+            <source>{robot} is {state}: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}; recibirá esto cuando se vuelva a saber de él, si es lo bastante pronto.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
@@ -1190,6 +1190,11 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
             <translation>{text!r}: la latitud {lat:g} y la longitud {lon:g} no están en la Tierra; escriba antes la latitud, o elija el SRC en que están los números.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
+            <source>Abort of {robot}</source>
+            <translation>Abortar {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1403,11 +1408,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>ABORT ALL</source>
             <translation>ABORTAR TODO</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/request_tracker.py" />
-            <source>Abort of {robot}</source>
-            <translation>Abortar {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -5078,6 +5078,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>Continue for {robots}</source>
+            <translation>Continuar para {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>Do now</source>
             <translation>Hacer ahora</translation>
         </message>
@@ -5175,6 +5180,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
             <translation>El enlace se perdió antes de la respuesta, y la cola ha cambiado, quizá por esto. Ahora está así.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The queue of {robot} was paused just before the click, so it was not resumed. Press Resume again to let it continue.</source>
+            <translation>La cola de {robot} se puso en pausa justo antes del clic, así que no se ha reanudado. Pulse Reanudar otra vez para que continúe.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
@@ -10037,9 +10047,19 @@
             <translation>Caminos por vías…</translation>
         </message>
         <message>
+            <location filename="../../plugin/ui/actions.py" />
+            <source>{key} is the key of the EMERGENCY STOP and does not perform {action}. Give that another key in Settings &gt; Keyboard Shortcuts.</source>
+            <translation>{key} es la tecla de la PARADA DE EMERGENCIA y no ejecuta {action}. Dele otra tecla en Configuración &gt; Atajos de teclado.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, último mensaje hace {age} por {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/scheduling.py" />
+            <source>a fault of the plugin: {error}. View &gt; Panels &gt; Log Messages says where: report it.</source>
+            <translation>un fallo del complemento: {error}. Ver &gt; Paneles &gt; Mensajes de registro dice dónde: infórmelo.</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/tables.py" />

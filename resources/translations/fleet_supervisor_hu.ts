@@ -1127,8 +1127,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, utoljára {age} ideje hallatszott: ezt akkor kapja meg, amikor újra hallatszik, ha az elég hamar van.</translation>
+            <source>{robot} is {state}: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}; ezt akkor kapja meg, amikor újra hallatszik, ha az elég hamar van.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
@@ -1184,6 +1184,11 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
             <translation>{text!r}: a {lat:g} szélesség és {lon:g} hosszúság nincs a Földön; a szélességet írja előbb, vagy válassza a számok vetületét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
+            <source>Abort of {robot}</source>
+            <translation>{robot} megszakítása</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1396,11 +1401,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>ABORT ALL</source>
             <translation>MIND MEGSZAKÍTÁSA</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/request_tracker.py" />
-            <source>Abort of {robot}</source>
-            <translation>{robot} megszakítása</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -5048,6 +5048,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
+            <source>Continue for {robots}</source>
+            <translation>Folytatás: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
             <source>Do now</source>
             <translation>Most</translation>
         </message>
@@ -5145,6 +5150,11 @@
             <location filename="../../plugin/panel/queue.py" />
             <source>The link was lost before the answer, and the queue has changed, perhaps by this. So it stands now.</source>
             <translation>A kapcsolat a válasz előtt megszakadt, és a várólista megváltozott, talán éppen ettől. Most így áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/queue.py" />
+            <source>The queue of {robot} was paused just before the click, so it was not resumed. Press Resume again to let it continue.</source>
+            <translation>{robot} várólistáját közvetlenül a kattintás előtt szüneteltették, ezért nem folytatódott. Nyomja meg újra a Folytatás gombot, hogy folytassa.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
@@ -9971,9 +9981,19 @@
             <translation>Útvonalak utakon…</translation>
         </message>
         <message>
+            <location filename="../../plugin/ui/actions.py" />
+            <source>{key} is the key of the EMERGENCY STOP and does not perform {action}. Give that another key in Settings &gt; Keyboard Shortcuts.</source>
+            <translation>A(z) {key} a VÉSZLEÁLLÍTÁS billentyűje, ezt nem hajtja végre: {action}. Adjon annak másik billentyűt itt: Beállítások &gt; Gyorsbillentyűk.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/scheduling.py" />
+            <source>a fault of the plugin: {error}. View &gt; Panels &gt; Log Messages says where: report it.</source>
+            <translation>a bővítmény hibája: {error}. A Nézet &gt; Panelek &gt; Naplóüzenetek megmondja, hol: jelentse.</translation>
         </message>
         <message>
             <location filename="../../plugin/ui/tables.py" />

@@ -400,7 +400,7 @@ def test_a_refused_override_comes_back_as_a_draft(cone, layer_of, gateway):
 def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, make_robot):
     cone = hand.take("cone")
     cone.click((20, 20))
-    assert "last heard" not in cone.draft_text
+    assert "when it is heard again" not in cone.draft_text
     gateway.show(make_robot("r1", 50, 40, age=125.0, state=RobotState.LOST))
     hand.wait(
         lambda: (
@@ -408,5 +408,38 @@ def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, ma
         )
     )
     cone.click((22, 20))
-    assert "r1 is lost, last heard 2 min ago: it is told this when it is heard again" in cone.draft_text
+    assert "r1 is lost: it is told this when it is heard again" in cone.draft_text
     assert not hand.drafts.draft.findings.refused
+
+
+@pytest.mark.parametrize("how, method", [("send", "send"), ("enqueue", "add_tasks")])
+def test_who_has_seen_that_a_robot_is_lost_sends_it_all_the_same(
+    hand, gateway, make_robot, layer_of, how, method
+):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    gateway.show(make_robot("r1", 50, 40, age=12.0, state=RobotState.LOST))
+    steady = hand.window.desk.clock.steady
+
+    def age():
+        return hand.window.desk.state.robots.view("r1", steady()).age
+
+    hand.wait(lambda: age() >= 12.0, what="the lost robot")
+    hand.take("cone").click((20, 20))
+    seen = age()
+    hand.wait(lambda: age() > seen + 0.2, what="the robot to be silent for longer")
+    getattr(hand.window.actions, how).trigger()
+    hand.wait(lambda: gateway.requests_of(method), what="the request")
+
+
+def test_a_draft_of_a_robot_that_moves_meanwhile_is_overridden(cone, layer_of, gateway, make_robot):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    before = cone.drafts.draft
+    confirm = override(cone, "the gate is open")
+    gateway.show(make_robot("r1", 51, 40))
+    cone.wait(
+        lambda: cone.drafts.draft.way != before.way and cone.drafts.draft.is_checked, what="its new way"
+    )
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    assert "the gate is open" in cone.drafts.draft.override
+    assert cone.drafts.draft.way.line[0] == (51, 40)

@@ -7,9 +7,11 @@ import time
 from dataclasses import replace
 
 import pytest
+from fleet_supervisor.plugin.control import request_tracker
 from fleet_supervisor.plugin.control.keepout_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import NotSentError
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from qgis.core import (
     QgsApplication,
     QgsExpression,
@@ -614,3 +616,101 @@ def test_the_plugin_is_unloaded_while_layers_hang(hand, layer_in_postgis, postgi
         hand.iface.findChild(QAction, "fleet_surface_at_point").trigger()
         plugin.unload()
         assert server.is_frozen
+
+
+def answered_late(hand, method, free):
+    """Have the gateway answer ``method`` only when the event ``free`` is set."""
+    gateway = hand.gateway
+
+    def answer(params):
+        assert free.wait(START)
+        return {"result": to_json(gateway._queue(**params)) if method == "send" else {}}
+
+    gateway.answers[method] = answer
+
+
+def test_what_is_not_sent_after_another_is_on_the_map_again_and_its_message_stays(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    free = threading.Event()
+    answered_late(slow, "send", free)
+    slow.take("cone")
+    for x in (20, 70):
+        slow.click((x, 55))
+        slow.key(ENTER)
+    free.set()
+    slow.wait(lambda: slow.has_message("m enters the keepout Bay"), what="the message")
+    slow.wait(lambda: slow.window.desk.state.commands.task_of("r1"), what="the report of the first")
+    assert len(slow.gateway.requests_of("send")) == 1
+    assert slow.points[0] == pytest.approx((70, 55), abs=0.3)
+    assert slow.has_message("m enters the keepout Bay")
+
+
+def test_a_message_stays_when_a_command_is_reported_that_was_asked_for_before_it(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    free = threading.Event()
+    answered_late(slow, "send", free)
+    slow.take("cone")
+    for x in (20, 25):
+        slow.click((x, 20))
+        slow.key(ENTER)
+    slow.wait(lambda: len(slow.window.desk.orders), what="the first one to be sent")
+    slow.window.actions.abort_all.trigger()
+    text = "was not sent: robots were told to stop"
+    slow.wait(lambda: slow.has_message(text), what="the message about the second one")
+    free.set()
+    slow.wait(lambda: slow.window.desk.state.commands.task_of("r1"), what="the report of the first")
+    assert slow.has_message(text)
+    slow.click((30, 20))
+    settle(slow)
+    slow.key(ENTER)
+    slow.wait(lambda: not slow.has_message(text), what="the end of the message")
+
+
+def test_targets_that_are_queued_quickly_are_all_queued_in_their_order(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    free = threading.Event()
+    answered_late(slow, "add_tasks", free)
+    slow.take("cone")
+    for x in (20, 25, 30):
+        slow.click((x, 20))
+        slow.window.actions.enqueue.trigger()
+    slow.wait(lambda: slow.gateway.requests_of("add_tasks"), what="the first one")
+    outgoing = slow.window.desk.sending.outgoing
+    slow.wait(lambda: not outgoing._slices.is_busy, what="nothing being checked")
+    assert len(outgoing) == 2
+    free.set()
+    slow.wait(lambda: len(slow.gateway.requests_of("add_tasks")) == 3, what="all of them")
+    places = [one["tasks"][0]["x"] for one in slow.gateway.requests_of("add_tasks")]
+    assert places == pytest.approx([20, 25, 30], abs=0.3)
+    assert slow.iface.texts() == []
+
+
+def test_what_waits_for_an_answer_that_is_late_is_on_the_map_again(slow, layer_of, monkeypatch):
+    monkeypatch.setattr(request_tracker, "SLOW_AFTER", 0.0)
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.gateway.mute.add("add_tasks")
+    slow.take("cone")
+    for x in (20, 25):
+        slow.click((x, 20))
+        slow.window.actions.enqueue.trigger()
+    assert slow.complained("The gateway has not answered yet what was asked of the queue of r1 before.")
+    assert slow.points[0] == pytest.approx((25, 20), abs=0.3)
+
+
+def test_a_fault_in_the_check_of_one_order_keeps_no_other_back(slow, layer_of, monkeypatch):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    outgoing = slow.window.desk.sending.outgoing
+    work = outgoing._work
+
+    def faulty(draft, afresh):
+        if round(draft.points[0][0]) == 25:
+            raise KeyError("x")
+        return (yield from work(draft, afresh))
+
+    monkeypatch.setattr(outgoing, "_work", faulty)
+    slow.take("cone")
+    for x in (20, 25, 30):
+        slow.click((x, 20))
+        slow.key(ENTER)
+    assert ends(slow, 2) == [("r1", 20), ("r1", 30)]
+    assert slow.complained("was not sent: a fault of the plugin: KeyError 'x'.")

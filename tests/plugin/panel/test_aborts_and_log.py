@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+from fleet_supervisor.plugin.control import request_tracker
 from fleet_supervisor.plugin.ui.language import short_time
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtWidgets import QApplication, QLabel, QLineEdit, QPushButton, QToolButton, QTreeView
@@ -15,6 +17,65 @@ def test_abort_asks_the_selected_robot_only(at_desk, gateway, wait):
     wait(lambda: gateway.requests_of("send"))
     (params,) = gateway.requests_of("send")
     assert (params["robot"], params["op"], params["params"]) == ("r2", "Abort", {})
+
+
+def select_many(window, gateway, make_robot, wait):
+    names = [f"m{number}" for number in range(20)]
+    gateway.show(*(make_robot(name, 10.0 + 3 * number, 80) for number, name in enumerate(names)))
+    wait(lambda: len(window.desk.state.robots) == 22, what="the robots")
+    window.desk.selection.select_all(names)
+    return names
+
+
+@pytest.mark.parametrize(
+    "action, method, words",
+    [
+        ("abort", "send", "Abort of m0, m1, m2, m3, m4, m5, and 14 more"),
+        ("pause", "pause_robot", "Pause of m0, m1, m2, m3, m4, m5, and 14 more"),
+        ("send_map", "send_map", "Map for m0, m1, m2, m3, m4, m5, and 14 more"),
+    ],
+)
+def test_what_one_press_is_refused_for_many_robots_is_one_message_until_all_are_asked_again(
+    at_desk, gateway, iface, make_robot, wait, action, method, words
+):
+    names = select_many(at_desk, gateway, make_robot, wait)
+    gateway.refuse[method] = "not now"
+    getattr(at_desk.actions, action).trigger()
+    wait(lambda: len(at_desk.desk.orders) == 0, what="the answers")
+    assert len(gateway.requests_of(method)) == 20
+    assert iface.texts() == [f"Fleet Supervisor: {words}: not now"]
+    gateway.refuse.clear()
+    at_desk.desk.selection.select_all(names[1:])
+    getattr(at_desk.actions, action).trigger()
+    wait(lambda: len(at_desk.desk.orders) == 0, what="the answers")
+    assert iface.texts() == [f"Fleet Supervisor: {words}: not now"]
+    at_desk.desk.selection.select("m0")
+    getattr(at_desk.actions, action).trigger()
+    wait(lambda: iface.texts() == [], what="the end of the message")
+
+
+def test_what_is_not_sent_to_many_robots_or_answered_late_is_one_message(
+    at_desk, gateway, iface, make_robot, wait, monkeypatch
+):
+    monkeypatch.setattr(request_tracker, "SLOW_AFTER", 0.0)
+    select_many(at_desk, gateway, make_robot, wait)
+    gateway.mute.add("send")
+    at_desk.actions.abort.trigger()
+    wait(lambda: iface.texts(), what="the message")
+    (text,) = iface.texts()
+    assert text.startswith(
+        "Fleet Supervisor: Abort of m0, m1, m2, m3, m4, m5, and 14 more: the gateway has not"
+    )
+    at_desk.desk.close_link()
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: len(at_desk.desk.orders) == 0, what="the answers")
+    (text,) = iface.texts()
+    at_desk.actions.pause.trigger()
+    told = [one for one in iface.texts() if one != text]
+    assert len(told) == 1
+    assert told[0].startswith(
+        "Fleet Supervisor: Pause of m0, m1, m2, m3, m4, m5, and 14 more was NOT sent: the desk"
+    )
 
 
 def test_abort_without_a_robot_says_so(at_desk, iface, gateway):

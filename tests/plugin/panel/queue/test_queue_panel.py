@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.panel import queue
 from fleet_supervisor.robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind
 from qgis.PyQt.QtCore import QPoint, QPointF, Qt
 from qgis.PyQt.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
@@ -164,6 +165,37 @@ def test_the_queue_is_paused_and_resumed(panel, gateway, wait):
     push(panel, "fleet_queue_hold")
     wait(lambda: "running" in text(panel, "fleet_queue_head"))
     assert [one["robot"] for one in gateway.requests_of("resume_queue")] == ["r1"]
+
+
+def test_a_click_on_pause_does_not_resume_what_somebody_else_has_just_paused(
+    panel, gateway, iface, wait, monkeypatch
+):
+    monkeypatch.setattr(queue, "DEAD_TIME", 3600.0)
+    gateway.queues.fail("r1", "stuck")
+    wait(lambda: "PAUSED" in text(panel, "fleet_queue_head"), what="the pause")
+    push(panel, "fleet_queue_hold")
+    (told,) = iface.texts()
+    assert "The queue of r1 was paused just before the click, so it was not resumed." in told
+    assert gateway.requests_of("resume_queue") == []
+    # Who selects a robot reads the button first, and who has paused it knows.
+    panel._desk.selection.select("r2")
+    panel._desk.selection.select("r1")
+    push(panel, "fleet_queue_hold")
+    wait(lambda: "running" in text(panel, "fleet_queue_head"), what="the queue going on")
+    push(panel, "fleet_queue_hold")
+    wait(lambda: "PAUSED" in text(panel, "fleet_queue_head"), what="the pause")
+    push(panel, "fleet_queue_hold")
+    wait(lambda: len(gateway.requests_of("resume_queue")) == 2, what="the second request")
+
+
+def test_a_click_means_what_the_button_said_when_the_mouse_was_pressed(panel, gateway, wait):
+    button = panel.findChild(QToolButton, "fleet_queue_hold")
+    QTest.mousePress(button, Qt.MouseButton.LeftButton)
+    gateway.queues.fail("r1", "stuck")
+    wait(lambda: "PAUSED" in text(panel, "fleet_queue_head"), what="the pause")
+    QTest.mouseRelease(button, Qt.MouseButton.LeftButton)
+    wait(lambda: gateway.requests_of("pause_queue"), what="the request")
+    assert gateway.requests_of("resume_queue") == []
 
 
 def test_a_change_that_comes_too_late_is_not_done_and_the_newer_queue_is_shown(panel, gateway, wait, iface):
