@@ -283,9 +283,7 @@ class FleetController(QObject):
         if not self.selection.robots:
             text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
             self.messages.post(text, Level.WARNING, messages.SELECTION)
-        self.orders.ask_each(
-            self.selection.robots, self.orders.abort, lambda names: tr("Abort of {robot}", robot=names)
-        )
+        self.orders.ask_each(self.selection.robots, self.orders.abort, tr("Abort of {robot}"))
         self._give_up_drafting()
 
     def abort_all(self) -> None:
@@ -331,7 +329,7 @@ class FleetController(QObject):
             topic = messages.queue_state_topic(robot, self.state.queues.get(robot))
             return self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot), topic)
 
-        asked = self.orders.ask_each(robots, ask, lambda names: tr("Pause of {robot}", robot=names))
+        asked = self.orders.ask_each(robots, ask, tr("Pause of {robot}"))
         self.sending.withdraw()
         return asked
 

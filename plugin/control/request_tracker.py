@@ -132,9 +132,12 @@ MOST_NAMES = 6
 
 @dataclass(eq=False)
 class RequestGroup:
-    """The requests of one press for several robots: what fails of them is one message, ``words`` of names."""
+    """The requests of one press for several robots: what fails of them is one message.
 
-    words: Callable[[str], str]
+    ``words`` is a text with a place for ``robot``, their names.
+    """
+
+    words: str
     failed: dict[Topic, tuple[str, str]] = field(default_factory=dict)
     """By the topic of its request, the robot and the reason."""
     is_sent: bool = False
@@ -146,7 +149,7 @@ class RequestGroup:
 
     def words_for(self, robots: Sequence[str]) -> str:
         """Return what was requested for these robots."""
-        return self.words(", ".join(first_of(robots, MOST_NAMES)))
+        return self.words.format(robot=", ".join(first_of(robots, MOST_NAMES)))
 
     def in_words(self) -> str:
         """Return what has failed so far, and why."""
@@ -295,13 +298,11 @@ class RequestTracker(QObject):
         """
         return self.submit(self._order(request), words, topics, draft)
 
-    def ask_each(
-        self, robots: Iterable[str], ask: Callable[[str], str], words: Callable[[str], str]
-    ) -> dict[str, str]:
+    def ask_each(self, robots: Iterable[str], ask: Callable[[str], str], words: str) -> dict[str, str]:
         """Call ``ask``, which sends a request and returns its key, for each robot; return keys and robots.
 
-        For several robots, all that is not sent or is refused is one message: ``words`` of their names, and
-        why. It is over when each of them has been asked for again.
+        For several robots, all that is not sent or is refused is one message: ``words`` with their names in
+        place of ``{robot}``, and why. It is over when each of them has been asked for again.
         """
         names, asked = list(robots), {}
         self._group = RequestGroup(words) if len(names) > 1 else None

@@ -359,7 +359,7 @@ class PendingCommandActions(QObject):
         self._desk.orders.ask_each(
             self._desk.selection.robots,
             lambda robot: self._desk.orders.ask(SendMap(robot), tr("Map for {robot}", robot=robot)),
-            lambda names: tr("Map for {robot}", robot=names),
+            tr("Map for {robot}"),
         )
 
     def _draft(self) -> PendingCommand:

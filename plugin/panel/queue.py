@@ -150,7 +150,7 @@ class QueueEdits(QObject):
             request = ResumeQueue(robot, queue.revision)
             return self._desk.orders.ask(request, words, self.state_topic(robot))
 
-        asked = self._desk.orders.ask_each(of, ask, lambda names: tr("Continue for {robots}", robots=names))
+        asked = self._desk.orders.ask_each(of, ask, tr("Continue for {robot}"))
         for key, robot in asked.items():
             self._record(key, robot)
 

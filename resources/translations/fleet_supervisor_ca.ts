@@ -5078,8 +5078,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
-            <source>Continue for {robots}</source>
-            <translation>Continua per a {robots}</translation>
+            <source>Continue for {robot}</source>
+            <translation>Continua per a {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />

@@ -5078,8 +5078,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
-            <source>Continue for {robots}</source>
-            <translation>Continuar para {robots}</translation>
+            <source>Continue for {robot}</source>
+            <translation>Continuar para {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />

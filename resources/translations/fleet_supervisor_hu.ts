@@ -5048,8 +5048,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
-            <source>Continue for {robots}</source>
-            <translation>Folytatás: {robots}</translation>
+            <source>Continue for {robot}</source>
+            <translation>Folytatás: {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/queue.py" />
