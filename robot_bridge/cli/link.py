@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ..core.logs import LogFormat, LogLevel, set_up_log
+from ..core.logs import LogFormat, LogLevel, set_up_server_log
 from ..links.base.settings import kind_in
 from ..links.kinds import KINDS, load
 from .options import UntilStdinCloses
@@ -36,7 +36,7 @@ def _running(kind: str | None) -> Callable[..., None]:
     ) -> None:
         from ..links.base.process import run
 
-        set_up_log(log_format, log_level)
+        set_up_server_log(log_format, log_level)
         found = kind or kind_in(config)
         if check:
             settings, _ = load(found, config)

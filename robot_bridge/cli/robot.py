@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 import typer
 
 from ..core.errors import BridgeError
+from ..core.logs import set_up_server_log
 from ..core.messages.base import check_robot_name
 from ..core.messages.robots import SendPos, SetObject
 from ..core.reconnection import ClientCredentials
@@ -91,6 +92,7 @@ def robot(
     until_stdin_closes: UntilStdinCloses = False,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
+    set_up_server_log()
     if (url is None) == (database is None):
         raise BridgeError("a robot has one link: give either --url or --database")
     where, limits = _pose(pose), BodyLimits.of(speed, turn_rate, acceleration)

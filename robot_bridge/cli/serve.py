@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ..core.errors import BridgeError
-from ..core.logs import LogFormat, LogLevel, set_up_log
+from ..core.logs import LogFormat, LogLevel, finish_writing, set_up_server_log
 from ..core.systemd import call_at_end_of_input, notify, watchdog_interval
 from ..gateway.monitoring import freeze_permanent_objects
 from . import options
@@ -33,6 +33,8 @@ HOST, PORT = "127.0.0.1", 8765
 SWITCH_INTERVAL_S = 0.0005
 LAST_MOMENT = 4.7
 """seconds after which a gateway that must end does so, whatever it waits for."""
+LAST_WORDS = 0.2
+"""seconds in which it writes that."""
 
 Loop = Literal["auto", "uvloop", "asyncio"]
 
@@ -115,7 +117,7 @@ def serve(
     # Each write to a connection lets the database's thread have a turn, which is as long as this (5 ms unless
     # set): a stop of a thousand robots would wait for a thousand of them.
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    set_up_log(log_format, log_level)
+    set_up_server_log(log_format, log_level)
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
     cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)
     settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
@@ -209,19 +211,9 @@ async def _serve(settings: GatewaySettings, until_stdin_closes: bool) -> None:
 
 def _started(address: str) -> None:
     freeze_permanent_objects()
-    _print_line(f"listening on {address}")
+    # In one piece: lines of standard error may go to the same file.
+    print(f"listening on {address}\n", end="")
     notify("READY=1", f"STATUS=listening on {address}")
-
-
-def _print_line(line: str) -> None:
-    """Print ``line``. Errors, such as a full disk or a closed pipe, are ignored: they must not end a
-    gateway."""
-    try:
-        print(line, flush=True)
-    except OSError as error:
-        log.warning("standard output cannot be written: %s", error.strerror)
-        # The rest would be written again at exit, which would then fail.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _stop(signals: Signals) -> None:
@@ -234,11 +226,9 @@ def _stop(signals: Signals) -> None:
 
 
 def _end_at_once() -> None:
-    print(
-        f"robot-bridge: something did not end within {LAST_MOMENT} s; the gateway ends without it",
-        file=sys.stderr,
-        flush=True,
-    )
+    text = f"robot-bridge: something did not end within {LAST_MOMENT} s; the gateway ends without it"
+    print(text, file=sys.stderr)
+    finish_writing(LAST_WORDS)
     os._exit(1)
 
 

@@ -1,13 +1,17 @@
-"""Log of a process: formats, repeated lines and unforeseen errors."""
+"""Log of a process: formats, writing in the background, repeated lines and unforeseen errors."""
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import io
 import json
 import logging
+import os
 import re
 import secrets
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -94,6 +98,116 @@ def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: Te
     logging.getLogger("alembic").setLevel(logging.WARNING)
     # It warns of each statement that fails among several, whose error it raises as well.
     logging.getLogger("psycopg").setLevel(logging.ERROR)
+
+
+# --- Standard output and standard error of a program with an event loop: a thread writes them ---
+
+log = logging.getLogger(__name__)
+
+MOST_UNWRITTEN = 1_000_000
+"""characters of one stream that wait to be written; lines beyond them are dropped, and counted."""
+WRITTEN_WITHIN = 1.0
+"""seconds in which the last lines of a program that ends are written; what is left then is lost."""
+
+
+class BackgroundStream(io.TextIOBase):
+    """A standard stream that makes no writer wait, and raises no errors of its file.
+
+    A terminal stopped by Ctrl+S, a pager, or a pipe that nobody reads would halt an event loop at the next
+    line, and with it every stop of a robot.
+    """
+
+    def __init__(self, name: str, stream: TextIO) -> None:
+        super().__init__()
+        self._name, self._encoding, self._file = name, stream.encoding, stream.fileno()
+        # Reentrant: a finalizer may log at any moment.
+        self._changed = threading.Condition(threading.RLock())
+        self._texts: list[str] = []
+        self._unwritten = self._dropped = 0
+        self._is_idle, self._has_failed = True, False
+        threading.Thread(target=self._run, name=name, daemon=True).start()
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        """The encoding of the file."""
+        return self._encoding
+
+    def fileno(self) -> int:
+        """Return the number of the file."""
+        return self._file
+
+    def writable(self) -> bool:
+        """Return true."""
+        return True
+
+    def write(self, text: str) -> int:
+        """Have ``text`` written soon; it is dropped while too much waits."""
+        with self._changed:
+            if self._unwritten >= MOST_UNWRITTEN:
+                self._dropped += text.count("\n")
+            else:
+                self._texts.append(text)
+                self._unwritten += len(text)
+                self._is_idle = False
+                self._changed.notify_all()
+        return len(text)
+
+    def finish(self, within: float) -> None:
+        """Wait until all is written, ``within`` seconds at most."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._is_idle, within)
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                while not self._texts:
+                    self._is_idle = True
+                    self._changed.notify_all()
+                    self._changed.wait()
+                text = "".join(self._texts)
+                self._texts.clear()
+            lost = self._write_through(text)
+            with self._changed:
+                self._unwritten -= len(text)
+                self._dropped += lost
+                # The line about them would only be dropped as well while the file refuses lines.
+                dropped = 0 if lost else self._dropped
+                self._dropped -= dropped
+            if dropped:
+                text = "%d lines of %s were dropped: it was not read, or could not be written"
+                log.error(text, dropped, self._name)
+
+    def _write_through(self, text: str) -> int:
+        """Write ``text``; return the number of lines that could not be written."""
+        rest = text.encode(self._encoding, "backslashreplace")
+        try:
+            # Without the buffer of Python, which a thread that waits here would keep locked at exit.
+            while rest:
+                rest = rest[os.write(self._file, rest) :]
+        except OSError as error:
+            if not self._has_failed:
+                self._has_failed = True
+                log.warning("%s cannot be written: %s", self._name, error.strerror or error)
+        return rest.count(b"\n")
+
+
+def set_up_server_log(form: LogFormat = "text", level: LogLevel = "warning") -> None:
+    """As :func:`set_up_log`; from now on threads write all of standard output and standard error."""
+    for attribute, name in (("stdout", "standard output"), ("stderr", "standard error")):
+        stream = getattr(sys, attribute)
+        # One that is closed, or in memory, makes nobody wait.
+        with contextlib.suppress(AttributeError, OSError):
+            setattr(sys, attribute, BackgroundStream(name, stream))
+    set_up_log(form, level)
+    atexit.register(finish_writing)
+
+
+def finish_writing(within: float = WRITTEN_WITHIN) -> None:
+    """Wait until standard output and standard error are written, ``within`` seconds at most."""
+    until = time.monotonic() + within
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, BackgroundStream):
+            stream.finish(max(0.0, until - time.monotonic()))
 
 
 # --- Unforeseen errors: logged in full, and reported to the caller by a number ---

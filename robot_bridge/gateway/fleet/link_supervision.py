@@ -310,7 +310,9 @@ async def _pass_on(lines: asyncio.StreamReader | None) -> str:
     """Write a link's output into this log's stream; return its last line, the reason why it ended."""
     last = ""
     while lines is not None and (line := await _line(lines)):
-        sys.stderr.write(line)
+        # Whatever becomes of the line: a link whose output nobody reads comes to a halt.
+        with contextlib.suppress(OSError):
+            sys.stderr.write(line)
         last = line.strip() or last
     return last.removeprefix("robot-bridge: ")[:300]
 

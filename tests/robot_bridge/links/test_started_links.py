@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import io
 import json
 import os
 import shutil
@@ -56,6 +58,19 @@ def children(bridge):
 
 def reported(desk, link):
     return next((one for one in desk.links if one["link"] == link), None)
+
+
+class FullStream(io.StringIO):
+    def write(self, text):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+async def test_a_link_is_read_to_its_end_where_its_lines_cannot_be_written(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", FullStream())
+    lines = asyncio.StreamReader()
+    lines.feed_data(b"WARNING one\nrobot-bridge: the last\n")
+    lines.feed_eof()
+    assert await link_supervision._pass_on(lines) == "the last"
 
 
 def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):

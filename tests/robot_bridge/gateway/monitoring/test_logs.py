@@ -3,10 +3,12 @@
 import io
 import json
 import logging
+import os
+import re
 
 import pytest
 
-from robot_bridge.core.logs import set_up_log, without_secrets
+from robot_bridge.core.logs import MOST_UNWRITTEN, BackgroundStream, set_up_log, without_secrets
 from robot_bridge.gateway.auth.accounts import TokenKind, new_token
 
 
@@ -101,3 +103,45 @@ def test_nor_does_one_inside_a_traceback(root_log):
     first, *rest = stream.getvalue().splitlines()
     assert first.endswith("ERROR link sql: unexpected")
     assert all(line.startswith("    ") and line.isprintable() for line in rest)
+
+
+@pytest.fixture
+def pipe():
+    read, write = os.pipe()
+    with os.fdopen(read, encoding="utf-8") as reader, os.fdopen(write, "w", encoding="utf-8") as writer:
+        yield reader, writer
+
+
+def test_lines_beyond_those_that_wait_are_dropped_and_counted_when_the_rest_is_read(root_log, pipe):
+    reader, writer = pipe
+    stream = BackgroundStream("standard error", writer)
+    set_up_log(stream=stream)
+    count = 2 * MOST_UNWRITTEN // 100
+    for number in range(count):
+        stream.write(f"{number:99}\n")
+    stream.finish(0.0)
+    kept = 0
+    while kept < count and (line := reader.readline()).strip() == str(kept):
+        kept += 1
+    assert MOST_UNWRITTEN // 100 <= kept < count
+    assert f"ERROR {count - kept} lines of standard error were dropped" in line
+    root_log.error("the next one")
+    assert re.search("ERROR the next one$", reader.readline())
+
+
+def test_lines_that_a_file_refuses_are_counted_once_it_takes_others(root_log, pipe):
+    reader, writer = pipe
+    full = os.open("/dev/full", os.O_WRONLY)
+    kept = os.dup(writer.fileno())
+    os.dup2(full, writer.fileno())
+    stream = BackgroundStream("standard error", writer)
+    set_up_log(stream=stream)
+    root_log.error("not to be read \ud800")
+    stream.finish(60.0)
+    os.dup2(kept, writer.fileno())
+    for file in (full, kept):
+        os.close(file)
+    root_log.error("one \ud800")
+    assert "ERROR one" in reader.readline()
+    # The refused one, and the one that says why it was.
+    assert "2 lines of standard error were dropped" in reader.readline()
