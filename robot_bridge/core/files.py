@@ -31,15 +31,25 @@ def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool =
 
     :raises OSError: ``file`` is as it was.
     """
-    beside = file.with_name(f".{file.name}.new")
+    write_beside(file, content, mode, synced=synced).replace(file)
+    if synced:
+        sync_folder(file.parent)
+
+
+def write_beside(file: Path, content: bytes, mode: int = 0o666, *, synced: bool = True) -> Path:
+    """Write what will replace ``file`` as :func:`write_state` does; return its path; raises OSError."""
+    beside = place_beside(file)
     with open(beside, "wb", opener=partial(os.open, mode=mode)) as stream:
         stream.write(content)
         if synced:
             stream.flush()
             os.fsync(stream.fileno())
-    beside.replace(file)
-    if synced:
-        _sync_folder(file.parent)
+    return beside
+
+
+def place_beside(file: Path) -> Path:
+    """Return the path at which :func:`write_beside` writes what will replace ``file``."""
+    return file.with_name(f".{file.name}.new")
 
 
 def write_state_into(room: Path, file: Path, content: bytes) -> None:
@@ -61,7 +71,7 @@ def write_state_into(room: Path, file: Path, content: bytes) -> None:
         earlier.unlink(missing_ok=True)
         os.link(file, earlier)
     room.replace(file)
-    _sync_folder(file.parent)
+    sync_folder(file.parent)
     with suppress(OSError):
         if earlier.stat().st_size >= size:
             earlier.replace(room)
@@ -83,7 +93,7 @@ def replacement(file: Path) -> Iterator[Path]:
         yield made
         _sync(made)
         made.replace(file)
-        _sync_folder(file.parent)
+        sync_folder(file.parent)
 
 
 class StagedFiles:
@@ -150,7 +160,7 @@ class StagedFiles:
         for name in made:
             self._keep_earlier(name)
             (self.folder / name).replace(self.target / name)
-        _sync_folder(self.target)
+        sync_folder(self.target)
 
     def _keep_earlier(self, name: str) -> None:
         place = self.target / name
@@ -198,7 +208,7 @@ def _sync(file: Path) -> None:
         os.fsync(stream.fileno())
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Flush the names in ``folder`` to the disk, too; some systems and file systems cannot, and need not."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)

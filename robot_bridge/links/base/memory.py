@@ -6,18 +6,20 @@ import asyncio
 import contextlib
 import errno
 import fcntl
+import itertools
 import json
 import logging
 import os
 import secrets
 import time
 from collections import OrderedDict
-from collections.abc import AsyncIterator, Iterable, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ...core.files import write_state
+from ...core.files import place_beside, sync_folder, write_beside, write_state
 from ...core.json_decoder import SHORT, DecodingError, decode_json
 from .errors import LinkError
 
@@ -27,8 +29,10 @@ MOST_OPEN = 20
 """unfinished messages of one robot: its map, its start, a target."""
 MOST_DONE = 1000
 """remembered messages of one robot: many more than a gateway ever has in flight."""
-LONGEST_FILE = 256 << 20
-"""bytes."""
+LARGER = 4
+"""times as large as its state the file may be; then it is rewritten."""
+SMALL_FILE = 1 << 20
+"""bytes of a file that is not rewritten."""
 LOCKED_FOR = 5.0
 """seconds for the link's previous process to end."""
 PASSING = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO})
@@ -50,8 +54,9 @@ class _Robot:
 
 
 class LinkMemory:
-    """The runs of robots, and the outcomes of their messages, in an append-only file.
+    """The runs of robots, and the outcomes of their messages, in a file.
 
+    Lines are appended, and the file is rewritten with the present state when it is much larger than that.
     Without a file it lasts as long as the process. While its disk is full or broken no message is begun,
     since another process would repeat it; stops need no memory.
     """
@@ -65,6 +70,9 @@ class LinkMemory:
         self._writing = asyncio.Lock()
         self._fault: OSError | None = None
         self._revision = 0
+        """number of changes that :meth:`_append_if_possible` was called for."""
+        self._size, self._largest = 0, SMALL_FILE
+        """bytes of the file, and those at which it is rewritten."""
         if file is not None:
             self._load(file)
             self._begin_file(file)
@@ -153,11 +161,7 @@ class LinkMemory:
         if id in begun:
             return True
         self._note(robot, id, None)
-        try:
-            await self._append_surely({"robot": robot, "begun": id})
-        except LinkError:
-            begun.pop(id, None)
-            raise
+        await self._append_surely({"robot": robot, "begun": id})
         return False
 
     async def finish(self, robot: str, id: int, done: CompletedCall) -> None:
@@ -189,38 +193,70 @@ class LinkMemory:
 
     async def _append_surely(self, line: dict[str, Any]) -> None:
         """Append a line, or the whole state if an earlier append failed; raises LinkError."""
-        if self._file is None:
-            return
-        self._revision += 1
+        if self._file is not None:
+            # The lock is held to the end of the writing, also when the message is given up.
+            await asyncio.shield(self._write_surely(line))
+
+    async def _write_surely(self, line: dict[str, Any]) -> None:
         async with self._writing:
-            if self._fault is None:
-                await asyncio.shield(asyncio.to_thread(self._append, line, surely=True))
-            else:
-                # Built here: the set of robots changes in this thread.
-                lines = list(self._lines())
-                await asyncio.shield(asyncio.to_thread(self._rewrite, lines, self._revision))
+            try:
+                if self._fault is None:
+                    await asyncio.to_thread(self._append, line, surely=True)
+                else:
+                    await asyncio.to_thread(self._rewrite, self._lines(), self._revision)
+            except LinkError:
+                # Before the next message writes the state.
+                if "begun" in line:
+                    self._robots[line["robot"]].begun.pop(line["begun"], None)
+                raise
+            if self._size > self._largest:
+                await self._compact()
 
     def _append(self, line: dict[str, Any], *, surely: bool = False) -> None:
         if self._file is None:
             return
         try:
-            with self._file.open("a", encoding="utf-8") as out:
-                out.write(json.dumps(line) + "\n")
+            with self._file.open("ab") as out:
+                out.write(_encoded(line))
+                out.flush()
+                self._size = out.tell()
                 if surely:
-                    out.flush()
                     os.fsync(out.fileno())
         except OSError as error:
             raise self._failed(error) from None
 
-    def _rewrite(self, lines: Sequence[dict[str, Any]], revision: int) -> None:
+    def _rewrite(self, lines: Iterable[dict[str, Any]], revision: int) -> None:
         assert self._file is not None
         try:
-            _write_lines(self._file, lines)
+            self._begin_size(_write_lines(self._file, lines))
         except OSError as error:
             raise self._failed(error) from None
         if revision == self._revision:
             log.warning("memory %s can be written again", self._file)
             self._fault = None
+
+    async def _compact(self) -> None:
+        """Replace the file by its present state; appending to it goes on where that is impossible."""
+        assert self._file is not None
+        revision = self._revision
+        try:
+            beside, size = await asyncio.to_thread(_write_lines_beside, self._file, self._lines())
+            if revision != self._revision:
+                # Something was appended meanwhile, which the next message includes.
+                return
+            beside.replace(self._file)
+        except OSError as error:
+            log.warning("memory %s cannot be made smaller: %s", self._file, error.strerror or error)
+            self._largest = 2 * self._size
+            # A part of it would take the room that the next message needs.
+            with contextlib.suppress(OSError):
+                place_beside(self._file).unlink(missing_ok=True)
+            return
+        self._begin_size(size)
+        await asyncio.to_thread(sync_folder, self._file.parent)
+
+    def _begin_size(self, size: int) -> None:
+        self._size, self._largest = size, max(SMALL_FILE, LARGER * size)
 
     def _failed(self, error: OSError) -> LinkError:
         if self._fault is None:
@@ -229,20 +265,24 @@ class LinkMemory:
         return LinkError(f"{self.fault}; robots can be stopped, and take on nothing until it can")
 
     def _load(self, file: Path) -> None:
+        left_out = 0
         try:
-            if file.stat().st_size > LONGEST_FILE:
-                raise LinkError(f"memory {file} has more than {LONGEST_FILE} bytes; delete it")
-            text = file.read_bytes()
+            with file.open("rb") as lines:
+                # In pieces, whatever is in the file: it is made smaller after that.
+                for number, line in enumerate(iter(partial(lines.readline, SHORT.length), b""), 1):
+                    try:
+                        self._apply_line(decode_json(line, SHORT))
+                    except (DecodingError, KeyError, TypeError, ValueError) as error:
+                        # The last line of a process killed during a write.
+                        if not left_out:
+                            log.warning("memory %s, line %d is left out: %s", file, number, error)
+                        left_out += 1
         except FileNotFoundError:
             return
         except OSError as error:
             raise LinkError(f"memory {file} cannot be read: {error.strerror or error}") from None
-        for number, line in enumerate(text.splitlines(), 1):
-            try:
-                self._apply_line(decode_json(line, SHORT))
-            except (DecodingError, KeyError, TypeError, ValueError) as error:
-                # The last line of a process killed during a write.
-                log.warning("memory %s, line %d is left out: %s", file, number, error)
+        if left_out > 1:
+            log.warning("memory %s: %d more lines are left out", file, left_out - 1)
 
     def _apply_line(self, line: dict[str, Any]) -> None:
         if "database" in line:
@@ -261,7 +301,7 @@ class LinkMemory:
     def _begin_file(self, file: Path) -> None:
         """Rewrite the file with the present state, which also checks that it is writable."""
         try:
-            _write_lines(file, self._lines())
+            self._begin_size(_write_lines(file, self._lines()))
         except OSError as error:
             if error.errno not in PASSING:
                 raise LinkError(
@@ -271,19 +311,26 @@ class LinkMemory:
             self._failed(error)
 
     def _lines(self) -> Iterator[dict[str, Any]]:
+        """Return the lines of the present state, for another thread: this one changes it meanwhile."""
+        first: list[dict[str, Any]] = []
         if self._database is not None:
             frame = {} if self._frame is None else {"frame": self._frame}
-            yield {"database": self._database, **frame}
-        for name in self._adrift:
-            yield {"robot": name, "adrift": True}
-        for name, robot in self._robots.items():
-            yield {"robot": name, "magic": robot.magic}
-            for id, done in robot.begun.items():
-                if done is None:
-                    yield {"robot": name, "begun": id}
-                else:
-                    refusal = {} if done.refusal is None else {"refusal": done.refusal}
-                    yield {"robot": name, "done": id, **refusal}
+            first.append({"database": self._database, **frame})
+        first += [{"robot": name, "adrift": True} for name in self._adrift]
+        robots = [(name, robot.magic, list(robot.begun.items())) for name, robot in self._robots.items()]
+        return itertools.chain(first, *(_lines_of(*robot) for robot in robots))
+
+
+def _lines_of(
+    name: str, magic: int, begun: list[tuple[int, CompletedCall | None]]
+) -> Iterator[dict[str, Any]]:
+    yield {"robot": name, "magic": magic}
+    for id, done in begun:
+        if done is None:
+            yield {"robot": name, "begun": id}
+        else:
+            refusal = {} if done.refusal is None else {"refusal": done.refusal}
+            yield {"robot": name, "done": id, **refusal}
 
 
 @contextlib.asynccontextmanager
@@ -332,5 +379,17 @@ def _locked(file: int) -> bool:
     return True
 
 
-def _write_lines(file: Path, lines: Iterable[dict[str, Any]]) -> None:
-    write_state(file, "".join(json.dumps(line) + "\n" for line in lines).encode())
+def _write_lines(file: Path, lines: Iterable[dict[str, Any]]) -> int:
+    """Replace ``file`` by ``lines``; return its size in bytes; raises OSError."""
+    content = b"".join(map(_encoded, lines))
+    write_state(file, content)
+    return len(content)
+
+
+def _write_lines_beside(file: Path, lines: Iterable[dict[str, Any]]) -> tuple[Path, int]:
+    content = b"".join(map(_encoded, lines))
+    return write_beside(file, content), len(content)
+
+
+def _encoded(line: dict[str, Any]) -> bytes:
+    return (json.dumps(line) + "\n").encode()

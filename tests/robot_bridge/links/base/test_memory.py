@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import subprocess
 import sys
+import threading
 
 import pytest
 
+from robot_bridge.core import files
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.memory import MOST_DONE, CompletedCall, LinkMemory, only_process
+from tests.support.patience import until
 
 
 @pytest.fixture
@@ -55,6 +59,102 @@ async def test_it_does_not_grow_for_ever(file):
     again = LinkMemory(file)
     assert (again.find("agv-1", 4), again.find("agv-1", 5)) == (None, CompletedCall())
     assert len(file.read_text(encoding="utf-8").splitlines()) == MOST_DONE + 1
+
+
+async def carry_on(memory, ids):
+    for id in ids:
+        await memory.begin("agv-1", id)
+        await memory.finish("agv-1", id, CompletedCall())
+
+
+@pytest.fixture
+def soon_large(file, monkeypatch):
+    """A memory that remembers 20 messages; its file is soon too large."""
+    monkeypatch.setattr("robot_bridge.links.base.memory.MOST_DONE", 20)
+    monkeypatch.setattr("robot_bridge.links.base.memory.SMALL_FILE", 2000)
+    memory = LinkMemory(file)
+    memory.use_database("db-1", "here")
+    memory.magic("agv-1")
+    memory.set_adrift("agv-2")
+    return memory
+
+
+async def test_a_file_much_larger_than_its_state_is_rewritten_with_it(soon_large, file):
+    largest = 0
+    for id in range(200):
+        await carry_on(soon_large, [id])
+        largest = max(largest, file.stat().st_size)
+        if id % 50 == 0:
+            magic = soon_large.renew("agv-1")
+    assert 2000 < largest < 8000
+    again = LinkMemory(file)
+    assert again.magic("agv-1") == magic and again.is_adrift("agv-2")
+    assert again.use_database("db-1", "here") is False
+    assert again.taken_on("agv-1") == list(range(180, 200))
+
+
+async def test_what_is_noted_while_the_file_is_rewritten_is_in_it(soon_large, file, monkeypatch):
+    """From the loop, without a wait for the thread that rewrites the file."""
+    noted = []
+
+    def write_beside(target, content):
+        magic = asyncio.run_coroutine_threadsafe(renew(), loop).result()
+        noted.append(magic)
+        return files.write_beside(target, content)
+
+    async def renew():
+        return soon_large.renew("agv-1")
+
+    loop = asyncio.get_running_loop()
+    monkeypatch.setattr("robot_bridge.links.base.memory.write_beside", write_beside)
+    await carry_on(soon_large, range(100))
+    assert noted and LinkMemory(file).magic("agv-1") == noted[-1]
+
+
+async def test_a_message_that_is_given_up_leaves_the_rewriting_to_itself(soon_large, file, monkeypatch):
+    """Two that write what replaces the file would mix it up."""
+    writing, goes_on, at_once = threading.Event(), threading.Event(), []
+
+    def write_beside(target, content):
+        at_once.append(writing.is_set())
+        writing.set()
+        goes_on.wait(60)
+        writing.clear()
+        return files.write_beside(target, content)
+
+    monkeypatch.setattr("robot_bridge.links.base.memory.write_beside", write_beside)
+    message = asyncio.create_task(carry_on(soon_large, range(100)))
+    await until(writing.is_set)
+    message.cancel()
+    await asyncio.gather(message, return_exceptions=True)
+    more = asyncio.create_task(carry_on(soon_large, range(100, 200)))
+    asyncio.get_running_loop().call_later(0.1, goes_on.set)
+    await more
+    assert len(at_once) > 1 and not any(at_once)
+    assert LinkMemory(file).taken_on("agv-1") == list(range(180, 200))
+
+
+async def test_a_file_that_cannot_be_rewritten_is_appended_to(soon_large, file, caplog):
+    new = file.with_name(f".{file.name}.new")
+    new.symlink_to("/dev/full")
+    await carry_on(soon_large, range(100))
+    assert soon_large.fault is None
+    assert "cannot be made smaller: No space left" in caplog.text
+    assert not new.is_symlink()
+    assert LinkMemory(file).taken_on("agv-1") == list(range(80, 100))
+
+
+async def test_a_file_of_any_length_is_read_in_pieces_and_made_smaller(file):
+    magic = LinkMemory(file).magic("agv-1")
+    with file.open("ab") as out:
+        out.write(b'{"robot": "agv-1", "done": 7}\n')
+        # Longer than any line.
+        out.truncate(16 << 20)
+        out.seek(0, 2)
+        out.write(b'\n{"robot": "agv-1", "done": 8}\n')
+    again = LinkMemory(file)
+    assert again.magic("agv-1") == magic and again.taken_on("agv-1") == [7, 8]
+    assert file.stat().st_size < 1000
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):
