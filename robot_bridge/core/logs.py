@@ -16,7 +16,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Literal, TextIO
+from typing import Any, Literal, TextIO
 
 from .clock import SYSTEM_CLOCK, Clock
 
@@ -239,6 +239,25 @@ def log_and_continue(
     except Exception:
         text = what % arguments if arguments else what
         log.exception("%s failed; what comes after it is done all the same", text)
+
+
+@contextlib.contextmanager
+def end_on_error(
+    log: logging.Logger, what: str, connection: Any, expected: type[Exception]
+) -> Iterator[None]:
+    """Log an exception of the block, and end its ``connection`` (of websockets): the peer connects again.
+
+    For tasks that send: else nothing more is sent while the connection stays open. An ``expected`` exception
+    ends the block alone.
+    """
+    try:
+        yield
+    except expected:
+        pass
+    except Exception:
+        log.exception("%s failed; the connection is ended, and the peer connects again", what)
+        # A clean close would say that the peer is not wanted, or was switched off.
+        connection.transport.abort()
 
 
 # --- Lasting troubles, such as a full disk: logged at their beginning, then once a minute

@@ -13,6 +13,7 @@ from websockets.frames import CloseCode
 
 from ..core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ..core.errors import AccessError, BridgeError
+from ..core.logs import end_on_error
 from ..core.messages.administration import Gateways
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Abort, Observed, OpAck, Ready, Request, Start
@@ -139,7 +140,7 @@ class RobotWebSocketLink:
         connection.transport.abort()
 
     async def _send_all(self, connection: ClientConnection) -> None:
-        try:
+        with end_on_error(log, f"robot {self._robot}: sending", connection, ConnectionClosed):
             while True:
                 request = await self._outgoing.get()
                 if isinstance(request, str):
@@ -149,8 +150,6 @@ class RobotWebSocketLink:
                 if id is not None:
                     self._pending_requests[id] = request
                 await connection.send(jsonrpc.call(type(request).__name__, params_of(request), id))
-        except ConnectionClosed:
-            return
 
     def _receive(self, agent: Agent, frame: str | bytes) -> None:
         try:

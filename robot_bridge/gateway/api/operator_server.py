@@ -14,6 +14,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine
+from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
 
 import msgspec
@@ -28,7 +29,7 @@ from ...core.errors import (
     OverridableError,
     RefusedError,
 )
-from ...core.logs import log_and_continue
+from ...core.logs import end_on_error, log_and_continue
 from ...core.messages import commands
 from ...core.messages.administration import PROTOCOL_VERSION, Hello
 from ...core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, Priority, Role, to_json
@@ -439,10 +440,15 @@ class OperatorSession:
             self._tasks[name].cancel()
         self._tasks[name] = asyncio.create_task(work)
 
+    def _sending(self, what: str) -> AbstractContextManager[None]:
+        """Return the context of a task that sends, whose unforeseen error ends the connection."""
+        text = f"sending {what} to desk of {self._operator}"
+        return end_on_error(log, text, self._connection, ConnectionClosed)
+
     async def _push_positions(self, interval: float, form: PositionForm) -> None:
-        frame, seen = self._fleet.snapshots.after(EVERYTHING, form=form)
-        tick = Tick.last(interval, time.monotonic())
-        try:
+        with self._sending("positions"):
+            frame, seen = self._fleet.snapshots.after(EVERYTHING, form=form)
+            tick = Tick.last(interval, time.monotonic())
             while True:
                 if frame is not None:
                     await self._connection.send(frame, text=form is PositionForm.ROWS)
@@ -452,12 +458,10 @@ class OperatorSession:
                 missed = due.number > tick.number + 1
                 frame, seen = self._fleet.snapshots.after(EVERYTHING if missed else seen, due, form)
                 tick = due
-        except ConnectionClosed:
-            return
 
     async def _push_view(self, watch: ViewWatch) -> None:
         tick = Tick.last(1 / watch.rate, time.monotonic())
-        try:
+        with self._sending("positions in view"):
             while True:
                 watch.changed.clear()
                 frame = watch.next_frame()
@@ -471,11 +475,9 @@ class OperatorSession:
                         await asyncio.sleep(VIEW_REST_S)
                 except TimeoutError:
                     tick = due
-        except ConnectionClosed:
-            return
 
     async def _push_news(self) -> None:
-        try:
+        with self._sending("news"):
             while True:
                 await self._news_event.wait()
                 self._news_event.clear()
@@ -484,8 +486,6 @@ class OperatorSession:
                     # With a client that accepts all at once this would not yield: robots must have their
                     # turn.
                     await asyncio.sleep(0)
-        except ConnectionClosed:
-            return
 
     def _next_news(self) -> list[str]:
         """Return the oldest waiting notifications, as many as are sent together."""

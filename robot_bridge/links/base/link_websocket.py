@@ -16,7 +16,7 @@ from websockets.frames import CloseCode
 
 from ...core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ...core.errors import AccessError, BridgeError
-from ...core.logs import log_and_continue
+from ...core.logs import end_on_error, log_and_continue
 from ...core.messages.base import MessageError
 from ...core.messages.robots import Abort
 from ...core.reconnection import ClientCredentials, GatewayAddresses, connection_failure
@@ -99,7 +99,7 @@ class LinkWebSocket:
         self._wake.set()
 
     async def _write(self, connection: ClientConnection, link: CallHandler) -> None:
-        try:
+        with end_on_error(log, f"link {self._settings.name}: sending", connection, ConnectionClosed):
             while True:
                 await self._wake.wait()
                 self._wake.clear()
@@ -108,8 +108,6 @@ class LinkWebSocket:
                 # Built when they can be sent: on a slow line only the newest positions are sent.
                 for frame in link.news():
                     await connection.send(frame)
-        except ConnectionClosed:
-            return
 
     # --- the connection -------------------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
 from ...core.errors import AccessError
+from ...core.logs import end_on_error
 from ...core.reconnection import connection_failure
 from ..base.errors import LinkError
 from ..ros.errors import FaultError
@@ -349,7 +350,7 @@ class RosbridgeConnection:
         self._faults[what] = (time.monotonic(), text)
 
     async def _write(self, connection: ClientConnection) -> None:
-        try:
+        with end_on_error(log, f"sending to rosbridge at {self._server.url}", connection, ConnectionClosed):
             while True:
                 await self._wake.wait()
                 self._wake.clear()
@@ -358,8 +359,6 @@ class RosbridgeConnection:
                     self._sent += 1
                     if self._sent % ASK_EVERY == 0:
                         await connection.send(self._probe(self.session, self._sent), text=True)
-        except ConnectionClosed:
-            return
 
     def _next(self) -> Frame | None:
         """Return the next frame to send; None without one, or while the server has too many unprocessed."""

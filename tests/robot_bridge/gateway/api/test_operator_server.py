@@ -54,6 +54,18 @@ class Connection:
         yield
 
 
+async def test_an_unforeseen_error_of_what_sends_ends_the_connection(caplog):
+    fleet, connection = SimpleNamespace(listeners=Listeners()), Connection()
+    connection.send_together = None
+    connection.transport = SimpleNamespace(abort=connection.hung_up.set)
+    session = OperatorSession(fleet, connection, gate=None, handlers=None)
+    session.notify("command", "one", {"state": "queued"})
+    async with asyncio.timeout(20):
+        await session.run()
+    assert "sending news to desk of Ada failed; the connection is ended" in caplog.text
+    assert "not callable" in caplog.text
+
+
 async def test_news_that_cannot_be_told_keep_back_none_that_come_after_them(caplog):
     fleet, connection = SimpleNamespace(listeners=Listeners()), Connection()
     session = OperatorSession(fleet, connection, gate=None, handlers=None)

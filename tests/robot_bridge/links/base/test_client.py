@@ -69,6 +69,33 @@ class NewerGateway:
                     self.answered.set()
 
 
+async def test_an_unforeseen_error_of_what_sends_ends_the_connection(caplog):
+    class Link:
+        is_connected = True
+
+        def news(self):
+            raise RuntimeError("not foreseen")
+
+        def lose(self):
+            lost.set()
+
+    async def speak(connection):
+        await connection.wait_closed()
+
+    lost = asyncio.Event()
+    async with serve(speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        gateway = SimpleNamespace(url=f"ws://127.0.0.1:{port}/link", token_file=None, ca=None)
+        settings = SimpleNamespace(name="test", folder=None, file=None, gateway=gateway)
+        link = LinkWebSocket(settings)
+        link.write_soon()
+        running = asyncio.create_task(link.run(Link()))
+        async with asyncio.timeout(20):
+            await lost.wait()
+        running.cancel()
+    assert "link test: sending failed; the connection is ended" in caplog.text
+
+
 class ReplacedGateway:
     """Has another database, or site, on each connection; ``said`` is what the link said on the last one."""
 
