@@ -1,4 +1,4 @@
-"""Retention: data older than the site's settings allow is deleted, in small pieces.
+"""Retention: data older than the site's settings allow, and OpAcks that nobody reads, are deleted in pieces.
 
 Daily partitions of positions are made ahead here, and dropped as a whole.
 """
@@ -16,7 +16,7 @@ from ..core.clock import SYSTEM_CLOCK, Clock, ClockWatch
 from ..core.sites.settings import SettingsSource, SiteSettings
 from .auth import audit
 from .storage.database import Database
-from .storage.repositories import closures, commands, emergency_stops, queues, records, trajectories
+from .storage.repositories import closures, commands, emergency_stops, queues, records, requests, trajectories
 from .storage.repositories.trajectories import DAY
 
 log = logging.getLogger(__name__)
@@ -98,7 +98,10 @@ class Retention:
         self._missing = missing
 
     async def prune(self) -> None:
-        """Delete data beyond the limits of the settings; raises StoreError."""
+        """Delete data beyond the limits of the settings, and unread OpAcks; raises StoreError."""
+        for robot, newest in (await self._database.run(requests.surplus_acks)).items():
+            if removed := await self._in_pieces(requests.remove_acks, robot, newest, AT_ONCE):
+                log.warning("robot %s: it does not read its OpAcks in sa: %d were deleted", robot, removed)
         if not self._trusts_clock():
             return
         for kind in kept(self._site.settings):
@@ -117,8 +120,11 @@ class Retention:
         return self._clock.steady() >= self._doubtful_until
 
     async def _forget(self, kind: RetainedRows) -> int:
-        before, removed = self._clock.time() - kind.days * DAY, 0
-        while some := await self._database.run(kind.forget, before, kind.at_once):
+        return await self._in_pieces(kind.forget, self._clock.time() - kind.days * DAY, kind.at_once)
+
+    async def _in_pieces(self, forget: Callable[..., int], *arguments: object) -> int:
+        removed = 0
+        while some := await self._database.run(forget, *arguments):
             removed += some
             await asyncio.sleep(PAUSE)
         return removed

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ...core.errors import DataRefusedError, NotReadyError, OtherRunError, RefusedError, StoreError
 from ...core.logs import TroubleNews
-from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name
+from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name, is_robot_name
 from ...core.messages.robots import PAYLOADS, REQUESTS, OpAck
 from ...protocol.codec import decode_request, parse_params
 from ..fleet.robot_outboxes import RequestOutcome
@@ -162,6 +162,9 @@ class SqlInterface:
             self._fleet.repeated.warn(log, _key_of(row), text)
             if isinstance(error, OtherRunError) and not REQUESTS[row.op].acknowledged:
                 # It expects no answer, and answers would flood the robot that owns the account.
+                return None
+            if not is_robot_name(row.robot):
+                # Nobody may read what is written for it.
                 return None
             return _refusal(row, str(error))
         except StoreError:

@@ -1,6 +1,7 @@
 """What is kept for a time only, on each kind of database: it goes in time, in pieces, and nothing else."""
 
 import asyncio
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 from sqlalchemy import func, insert, select
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.core.messages.robots import Abort, OpAck, SendPos, SetPosEnd
 from robot_bridge.core.sites.settings_tables import (
     AuditSettings,
     CommandSettings,
@@ -28,6 +29,7 @@ from robot_bridge.gateway.retention import Retention
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.requests import MOST_UNREAD_ACKS, add_answers
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, TrajectoryQuery, pack
 from robot_bridge.gateway.storage.schema import (
     audit,
@@ -37,6 +39,7 @@ from robot_bridge.gateway.storage.schema import (
     emergency_stops,
     metadata,
     observations,
+    sa,
     sessions,
 )
 
@@ -184,6 +187,30 @@ def fill(connection):
 
 def left(connection):
     return {column: set(connection.scalars(select(column))) for column in KEPT}
+
+
+async def test_of_opacks_that_a_robot_does_not_read_the_newest_stay_and_its_commands(database, site, caplog):
+    """Whatever the clock says."""
+    target, stop = SetPosEnd(1.0, 2.0), Abort(emergency=True)
+    acks = [("r1", OpAck(id=id)) for id in range(2 * MOST_UNREAD_ACKS)]
+    others = [("r2", OpAck(id=id)) for id in range(MOST_UNREAD_ACKS)]
+    await database.run(add_answers, [("r1", target), ("r1", stop), *acks, *others])
+    pruning = Retention(database, site, ManualClock(wall=NOW))
+    pruning.doubt_clock()
+    await pruning.prune()
+    rows = await database.run(lambda its: list(its.execute(select(sa.c.robot, sa.c.op, sa.c.params))))
+    kept = [(robot, op, json.loads(params).get("id")) for robot, op, params in rows]
+    newest = range(MOST_UNREAD_ACKS, 2 * MOST_UNREAD_ACKS)
+    assert sorted(kept, key=str) == sorted(
+        [
+            ("r1", "SetPosEnd", None),
+            ("r1", "Abort", None),
+            *(("r1", "OpAck", id) for id in newest),
+            *(("r2", "OpAck", id) for id in range(MOST_UNREAD_ACKS)),
+        ],
+        key=str,
+    )
+    assert f"robot r1: it does not read its OpAcks in sa: {MOST_UNREAD_ACKS} were deleted" in caplog.text
 
 
 async def test_what_is_too_old_goes_and_all_else_stays(database, settings):

@@ -25,7 +25,7 @@ from sqlalchemy import (
 
 from ....core.json_decoder import SHORT, DecodingError, decode_json
 from ....core.messages.base import LARGEST_MESSAGE, to_json
-from ....core.messages.robots import COMMANDS, Abort, Answer, SetMap
+from ....core.messages.robots import COMMANDS, Abort, Answer, OpAck, SetMap
 from ..rows import BatchedWork, Row, add_messages, delete_messages, padded_pieces
 from ..schema import rr, sa
 
@@ -140,6 +140,9 @@ def add_requests(connection: Connection, rows: Sequence[tuple[str, str, str, byt
 ORDERS = tuple(op for op in COMMANDS if op != Abort.__name__)
 """Messages that move a robot, or set its position: it must know the map before."""
 
+MOST_UNREAD_ACKS = 300
+"""OpAcks of one robot that are kept for it: one that deletes none would fill the disk."""
+
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _LATER = or_(
     and_(sa.c.urgent == 0, sa.c.id > bindparam("after")),
@@ -165,6 +168,18 @@ _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
 _UNLOCKED_KINDS = _KINDS.where(_OF_THESE).with_for_update(skip_locked=True)
 _KINDS_OF_ROBOTS = _KINDS.add_columns(sa.c.robot, sa.c.op).where(_OF_THESE).order_by(sa.c.id.desc())
+_IS_ACK = sa.c.op == OpAck.__name__
+_WITH_MANY_ACKS = (
+    select(sa.c.robot).where(_IS_ACK).group_by(sa.c.robot).having(func.count() > MOST_UNREAD_ACKS)
+)
+_ACKS_OF = select(sa.c.id).where(sa.c.robot == bindparam("of"), _IS_ACK)
+_NEWEST_SURPLUS_ACK = _ACKS_OF.order_by(sa.c.id.desc()).offset(MOST_UNREAD_ACKS).limit(1)
+_SURPLUS_ACKS = (
+    _ACKS_OF.where(sa.c.id <= bindparam("newest"))
+    .order_by(sa.c.id)
+    .limit(bindparam("most"))
+    .with_for_update(skip_locked=True)
+)
 
 
 class AnswerRow(NamedTuple):
@@ -321,6 +336,23 @@ def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence
     for some in padded_pieces(robots):
         found = connection.scalars(_UNLOCKED_KINDS, {"robots": some, "ops": ops})
         remove_answers(connection, list(found))
+
+
+def surplus_acks(connection: Connection) -> dict[str, int]:
+    """Return the robots with more than :data:`MOST_UNREAD_ACKS`, each with its newest OpAck beyond these."""
+    robots = list(connection.scalars(_WITH_MANY_ACKS))
+    newest = {robot: connection.scalar(_NEWEST_SURPLUS_ACK, {"of": robot}) for robot in robots}
+    return {robot: id for robot, id in newest.items() if id is not None}
+
+
+def remove_acks(connection: Connection, robot: str, newest: int, most: int) -> int:
+    """Delete at most ``most`` OpAcks of a robot up to the id ``newest``, oldest first; return their number.
+
+    Those that a robot is just reading are left.
+    """
+    found = list(connection.scalars(_SURPLUS_ACKS, {"of": robot, "newest": newest, "most": most}))
+    remove_answers(connection, found)
+    return len(found)
 
 
 def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:

@@ -127,9 +127,6 @@ JUNK = [
     ("r1", "OpAck", '{"id": 1000000000000000000000000000000}', "OpAck: id is 1000"),
     ("r1", "GetMap", '{"x": 1, "y": 1, "area": 0}', "GetMap: area is 0"),
     ("r1", "Fly", None, "unknown operation 'Fly'; known are Ready"),
-    ("", "Alive", None, "robot name '' cannot be used"),
-    ("r 1", "Alive", None, "robot name 'r 1' cannot be used"),
-    ("röbi \U0001f916", "Alive", None, "cannot be used"),
 ]
 
 
@@ -163,14 +160,38 @@ async def test_junk_is_answered_with_the_reason_and_removed_and_holds_up_nobody(
         ("'r1', 'SendPos', x'ff00'", "SendPos: params is not JSON"),
         ("'r1', 'SendPos', cast(x'ff41' as text)", "SendPos: params is not JSON"),
         ("'r1', x'ff00', null", "unknown operation"),
-        ("x'ff00', 'Alive', null", "cannot be used"),
-        ("cast(x'ff41' as text), 'Alive', null", "cannot be used"),
     ],
 )
 async def test_what_only_sqlite_takes_for_text_is_answered_too(yard, values, reason):
     await hello(yard)
     yard.sql(f"insert into rr (robot, op, params) values ({values})")
     await asked_junk(yard, reason)
+
+
+NAMES = ["''", "'r 1'", "'röbi \U0001f916'"]
+
+
+async def asked_under_no_name(yard, caplog, robot):
+    """A request that no robot can have made is removed, and logged: nobody reads an answer to it."""
+    await hello(yard)
+    yard.sql(f"insert into rr (robot, op, params) values ({robot}, 'Alive', null)")
+    yard.ask("r1", SendPos(5.0, 6.0, 0.0, 0.0))
+    await yard.link.poll()
+    assert yard.sql("select count(*) from sa") == yard.sql("select count(*) from rr") == [(0,)]
+    assert "cannot be used" in caplog.text
+    (report,) = yard.fleet.reports()
+    assert report.x == 5.0
+
+
+@pytest.mark.parametrize("robot", NAMES)
+async def test_what_is_asked_under_no_name_of_a_robot_is_removed_without_an_answer(yard, caplog, robot):
+    await asked_under_no_name(yard, caplog, robot)
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("robot", ["x'ff00'", "cast(x'ff41' as text)"])
+async def test_nor_is_what_only_sqlite_takes_for_a_name(yard, caplog, robot):
+    await asked_under_no_name(yard, caplog, robot)
 
 
 async def test_what_goes_wrong_inside_is_answered_without_a_word_of_it_and_logged(yard, monkeypatch, caplog):
