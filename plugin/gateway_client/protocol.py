@@ -349,6 +349,9 @@ class GatewayProtocol:
         if report.stop != self._stop:
             self._outbox.overtake(None)
         self._stop = report.stop
+        if report.cleared_at is not None and (done := self._outbox.stop_made(report.stop)) is not None:
+            # It arrived, and sent again it would be another stop.
+            self._buffer.add_answer(RequestResult(done, result=to_json(report)))
         self._buffer.add(emergency=report)
 
     def _learn(self, reported: object) -> None:

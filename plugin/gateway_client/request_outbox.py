@@ -6,6 +6,7 @@ import json
 
 from ...robot_bridge.core.messages import commands
 from ...robot_bridge.core.messages.base import DESK_REQUESTS
+from ...robot_bridge.core.messages.safety import EmergencyStop
 from .fleet_state import OperatorRequest, RequestGround
 
 REPEAT_WITHIN = 30.0
@@ -56,6 +57,16 @@ class RequestOutbox:
         """Remove and return the request that was answered; None when it was answered before."""
         self._void.discard(key)
         return self._waiting.pop(key, None)
+
+    def stop_made(self, stop: str | None) -> OperatorRequest | None:
+        """Remove and return the request that has made an emergency stop, if it waits for its answer."""
+        made = (
+            key
+            for key, one in self._waiting.items()
+            if one.method == EmergencyStop.method and one.params.get("command") == stop
+        )
+        key = next(made, None)
+        return None if key is None else self.answered(key)
 
     def renew(self, now: float) -> tuple[list[OperatorRequest], list[OperatorRequest]]:
         """Return the requests to send on a new link, and those too old, which are removed.

@@ -27,6 +27,7 @@ from ..fleet.robot_outboxes import RequestOutcome
 from ..fleet.service import Fleet
 from ..monitoring import BackgroundTasks
 from ..storage.database import to_its_end
+from ..storage.repositories.robots import FencedError
 from .delivery import Channel, Delivery, while_connected
 
 log = logging.getLogger(__name__)
@@ -263,11 +264,21 @@ class RobotSession:
         # A robot that restarts on its own connection is not a second one.
         self._fleet.reception.holds.free(self.robot, self)
         self._sessions.await_admission(self)
-        outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
+        try:
+            outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
+            if outcome.admitted:
+                self._fleet.check_owned(self.robot)
+        except StoreError as error:
+            # It says Ready again, unless another gateway has the robot.
+            if isinstance(error, FencedError):
+                self._sessions.refuse(self)
+            raise
+        except Exception:
+            self._sessions.refuse(self)
+            raise
         if not outcome.admitted:
             self._sessions.refuse(self)
         else:
-            self._fleet.check_owned(self.robot)
             self._admitted = True
             self._sessions.admit(self)
         return outcome

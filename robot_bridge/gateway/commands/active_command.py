@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from ...core.errors import UsedIdError
+from ...core.errors import RefusedError, listed_names
 from ...core.geometry import Polyline
 from ...core.messages.base import to_json
 from ...core.messages.commands import ABORT_VALID_S, CommandReport, CommandState, CommandStep
@@ -105,6 +105,11 @@ class CommandOrder:
     def is_emergency(self) -> bool:
         """Whether it is the Abort of an emergency stop."""
         return isinstance(self.message, Abort) and self.message.emergency
+
+    @property
+    def kept_as(self) -> tuple[str | None, bool]:
+        """What it is kept as while it is not stored: a failed pause replaces no operator's Abort."""
+        return self.aborts, self.of_pause
 
     @property
     def is_stop(self) -> bool:
@@ -242,11 +247,12 @@ def create_command(order: CommandOrder, now: float) -> ActiveCommand:
     return ActiveCommand(report, 0, order.message, expires_at=expires_at, written_at=now)
 
 
-def aborts_renamed(orders: Sequence[CommandOrder], error: UsedIdError) -> list[CommandOrder]:
-    """Return Aborts under new ids, since one of theirs is another command's; raises ``error`` for others."""
-    if not all(isinstance(order.message, Abort) for order in orders):
-        raise error
-    log.warning("%s: the Abort is given another id", error)
+def aborts_renamed(orders: Sequence[CommandOrder]) -> list[CommandOrder]:
+    """Return Aborts under new ids, since theirs were used before; none if not all ``orders`` are Aborts."""
+    if not (orders and all(isinstance(order.message, Abort) for order in orders)):
+        return []
+    robots = listed_names([order.robot for order in orders])
+    log.warning("%s: the Abort is sent under another id, since its own was used before", robots)
     return [dataclasses.replace(order, command=str(uuid.uuid4())) for order in orders]
 
 
@@ -397,6 +403,14 @@ def _to_be_sent_again(
 
 # --- Aborts that could not be stored, kept until they are ---
 
+SENT_ON_S = 60.0
+"""seconds after an Abort that another gateway could not store from which a newer motion makes it void:
+clocks of gateways differ."""
+YOUNG_S = 600.0
+"""seconds for which that holds. An older Abort would stop a robot for no visible reason: see LATER_S."""
+LATER_S = 2.0
+"""the same for an older Abort: twice the difference of clocks above which it is logged."""
+
 
 class KeptAbort(NamedTuple):
     """An Abort that is not stored, kept since ``at`` (wall clock, s).
@@ -407,6 +421,14 @@ class KeptAbort(NamedTuple):
     order: CommandOrder
     at: float
     is_left: bool = False
+
+    def check_not_sent_on(self, newest: CommandReport, now: float) -> None:
+        """Raise RefusedError where ``newest``, the last motion of its robot, was asked after it."""
+        if newest.steps[0].at > self.at + (SENT_ON_S if now - self.at < YOUNG_S else LATER_S):
+            raise RefusedError(
+                f"it was not stored, and the robot has been sent on since ({newest.op} of "
+                f"{newest.operator}): look whether it does what it should, and abort it if not"
+            )
 
 
 class AbortNotes(Protocol):
@@ -427,14 +449,14 @@ class AbortNotes(Protocol):
 
 
 class UnstoredAborts:
-    """The newest unstored Abort of each robot, and of each single command to be aborted.
+    """The newest unstored Abort of each robot, of each single command to be aborted, and of a failed pause.
 
     The Abort of an emergency stop is among them once the stop is over: before, the stop keeps it. They are
     written to ``notes``, if given.
     """
 
     def __init__(self, notes: AbortNotes | None = None) -> None:
-        self._kept: dict[str, dict[str | None, KeptAbort]] = {}
+        self._kept: dict[str, dict[tuple[str | None, bool], KeptAbort]] = {}
         self._orders: dict[str, CommandOrder] = {}
         """the orders of the kept ones, by id."""
         self._aside: set[str] = set()
@@ -466,7 +488,7 @@ class UnstoredAborts:
     def keep_left(self, left: Iterable[KeptAbort]) -> None:
         """Keep Aborts that are noted already, unless a newer one is kept in their place."""
         for one in left:
-            mine = self._kept.get(one.order.robot, {}).get(one.order.aborts)
+            mine = self._kept.get(one.order.robot, {}).get(one.order.kept_as)
             if mine is not None and mine.order.command == one.order.command:
                 continue
             if mine is None or mine.at < one.at:
@@ -540,9 +562,9 @@ class UnstoredAborts:
         If the gateway is killed before that, the next one finds its id stored, and nothing changes.
         """
         mine = self._kept.get(order.robot, {})
-        kept = mine.get(order.aborts)
+        kept = mine.get(order.kept_as)
         if kept is not None and kept.order is order:
-            del mine[order.aborts]
+            del mine[order.kept_as]
             self._settle(order.command)
         if not mine:
             self._kept.pop(order.robot, None)
@@ -558,12 +580,12 @@ class UnstoredAborts:
     def _keep(self, kept: KeptAbort) -> None:
         order = kept.order
         mine = self._kept.setdefault(order.robot, {})
-        before = mine.get(order.aborts)
+        before = mine.get(order.kept_as)
         if before is not None and before.order.command == order.command:
             kept = kept._replace(at=before.at)
         elif before is not None:
             self._settle(before.order.command)
-        mine[order.aborts] = kept
+        mine[order.kept_as] = kept
         self._orders[order.command] = order
         self._is_noted = False
 

@@ -7,7 +7,7 @@ import contextlib
 import dataclasses
 import logging
 from collections import deque
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import AsyncIterator, Callable, Collection, Coroutine, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
@@ -51,10 +51,14 @@ class CommandInsert(NamedTuple):
 
 
 class WrittenCommands(NamedTuple):
-    """Written commands: the ordered ones in their new states, in order, and older ones that changed."""
+    """Written commands: the ordered ones in their new states, in order, and older ones that changed.
+
+    ``known`` are the ids of ordered ones that were stored before.
+    """
 
     issued: list[ActiveCommand]
     changed: list[ActiveCommand]
+    known: Collection[str] = ()
 
 
 FORGOTTEN = ("Start", "OpAck", "SetMap")
@@ -96,7 +100,7 @@ def insert_commands(
     if also is not None:
         also(connection)
     issued = [written.get(d.order.command) or opened(known[d.order.command], d.order.message) for d in drafts]
-    return WrittenCommands(issued, changed)
+    return WrittenCommands(issued, changed, known)
 
 
 def check_same(known: CommandReport, order: CommandOrder) -> None:

@@ -139,22 +139,8 @@ class CommandRequests:
         return Commands(await self._database.run(commands.newest, request.robot, request.limit))
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
-        """Store Aborts; those that are not stored within a second are sent by themselves as well.
-
-        One under the id of an earlier Abort is another one where its robot was sent on since: a script may
-        send the same id each time.
-        """
-        reports = await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
-        again = {
-            order.robot: replace(order, command=str(uuid.uuid4()))
-            for order, report in zip(orders, reports, strict=True)
-            if self._commands.drives_after(report)
-        }
-        if not again:
-            return reports
-        log.warning("%s: sent another Abort under an id that was used before", listed_names(sorted(again)))
-        renewed = await self._issue_aborts(list(again.values()))
-        return [next((new for new in renewed if new.robot == old.robot), old) for old in reports]
+        """Store Aborts; those that are not stored within a second are sent by themselves as well."""
+        return await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
 
     async def send_if_unstored(
         self, orders: list[CommandOrder], storing: asyncio.Task[T], *, is_pause: bool = False

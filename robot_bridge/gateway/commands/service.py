@@ -46,13 +46,6 @@ DRIVEN_STEP = 0.5
 NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
 """Stands for a pose that was not stored: far from any real one."""
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
-SENT_ON_S = 60.0
-"""seconds after an Abort that another gateway could not store from which a newer motion makes it void:
-clocks of gateways differ."""
-YOUNG_S = 600.0
-"""seconds for which that holds. An older Abort would stop a robot for no visible reason: see LATER_S."""
-LATER_S = 2.0
-"""the same for an older Abort: twice the difference of clocks above which it is logged."""
 MOST_LATE = 1000
 """most acknowledgements of ended commands that wait for the database."""
 
@@ -130,9 +123,8 @@ class CommandService(CommandReader):
         self.drafting.note_stop(robots)
 
     async def await_stored(self, robot: str) -> None:
-        """Wait until the orders of a robot that are being stored are stored; raises StoreError."""
-        async with self._held.of([robot]):
-            return
+        """Wait until orders of a robot that are being stored are, and its kept Aborts; raises StoreError."""
+        await to_its_end(self._store_behind(robot))
 
     def keep_aborts(self, aborts: Iterable[CommandOrder]) -> Future[bool] | None:
         """Store Aborts before any other message of their robots; return the writing of their notes."""
@@ -370,7 +362,14 @@ class CommandService(CommandReader):
                 async with self._held.of(robots):
                     if not all(order.is_emergency for order in orders):
                         await self._store_unstored(robots)
-                    return await self._store(orders, found, also)
+                    issued, known = await self._store(orders, found, also)
+                    stored = [command for command in issued if command.report.command in known]
+                    again = self.used_again(orders, stored, self._clock.time())
+                    if renamed := active_command.aborts_renamed(again):
+                        renewed, _ = await self._store(renamed, [None] * len(again), None)
+                        of = {old.command: new for old, new in zip(again, renewed, strict=True)}
+                        issued = [of.get(command.report.command, command) for command in issued]
+                    return [command.report for command in issued]
             except DataRefusedError:
                 raise
             except StoreError:
@@ -379,7 +378,11 @@ class CommandService(CommandReader):
                 raise
 
     async def _issue_unstored(self, robot: str) -> None:
-        async with self._turns.of([robot]), self._held_behind_aborts([robot]):
+        async with self._turns.of([robot]):
+            await self._store_behind(robot)
+
+    async def _store_behind(self, robot: str) -> None:
+        async with self._held_behind_aborts([robot]):
             return
 
     @contextlib.asynccontextmanager
@@ -395,33 +398,27 @@ class CommandService(CommandReader):
             order = kept.order
             with log_and_continue(log, f"storing Abort {order.command}", except_for=StoreError):
                 try:
-                    if kept.is_left:
-                        await self._check_not_sent_on(kept)
+                    newest = [order.robot, 1, MOTION_OPS]
+                    for motion in await self._database.run(commands.newest, *newest) if kept.is_left else ():
+                        kept.check_not_sent_on(motion, self._clock.time())
                     await self._store([order], [None], None)
                 except (DataRefusedError, RefusedError) as error:
                     log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
             self._unstored.discard(order)
 
-    async def _check_not_sent_on(self, kept: active_command.KeptAbort) -> None:
-        """Raise RefusedError where the robot was sent on after an Abort that was left; StoreError."""
-        order, age = kept.order, self._clock.time() - kept.at
-        after = kept.at + (SENT_ON_S if age < YOUNG_S else LATER_S)
-        for newest in await self._database.run(commands.newest, order.robot, 1, MOTION_OPS):
-            if newest.steps[0].at > after:
-                raise RefusedError(
-                    f"it was not stored, and the robot has been sent on since ({newest.op} of "
-                    f"{newest.operator}): look whether it does what it should, and abort it if not"
-                )
-
     async def _store(
         self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: persistence.Also | None
-    ) -> list[CommandReport]:
+    ) -> tuple[list[ActiveCommand], Collection[str]]:
+        """Store orders; return their commands, and the ids of those that were stored before."""
         now, robots = self._clock.time(), [order.robot for order in orders]
         drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
         try:
-            issued, changed = await self._held.run(robots, persistence.insert_commands, drafts, also)
+            issued, changed, known = await self._held.run(robots, persistence.insert_commands, drafts, also)
         except UsedIdError as error:
-            return await self._store(active_command.aborts_renamed(orders, error), found, also)
+            if not (renamed := active_command.aborts_renamed(orders)):
+                raise
+            log.warning("%s", error)
+            return await self._store(renamed, found, also)
         for command in changed:
             self._apply(command)
         for command in issued:
@@ -429,7 +426,7 @@ class CommandService(CommandReader):
             if report.state is CommandState.QUEUED and self._open.get(report.command) is None:
                 self._apply(command)
                 self._events.publish(OutboxChanged(report.robot))
-        return [command.report for command in issued]
+        return issued, known
 
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         async with self._turns.of([robot]):

@@ -13,7 +13,7 @@ from ...core.clock import steady_time
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
 from ...core.messages.base import DeskRequest
-from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.commands import CommandState
 from ...core.messages.robots import MOTIONS, Abort, Command, SetPath, SetPosEnd
 from ...core.messages.safety import Ability
 from ..model.robots import Robots
@@ -95,6 +95,10 @@ class ActiveCommands:
 
 
 # --- Queries of the open commands; nothing here changes any ---
+
+
+REPEATED_WITHIN_S = 60.0
+"""seconds within which a repeated Abort counts as repeated by a desk, which does so for 30 s."""
 
 
 class CommandReader:
@@ -181,10 +185,24 @@ class CommandReader:
         motions = [c.report.steps[0].at for c in mine if c.is_motion and c.sa_id > aborted]
         return any(began <= at or began > doubted_from for began in motions)
 
-    def drives_after(self, abort: CommandReport) -> bool:
-        """Return whether the robot of an Abort has an open motion that was asked for after it."""
-        began = abort.steps[0].at
-        return any(c.is_motion and c.report.steps[0].at > began for c in self._open.of(abort.robot))
+    def used_again(
+        self, orders: Iterable[CommandOrder], stored: Iterable[ActiveCommand], now: float
+    ) -> list[CommandOrder]:
+        """Return those ``orders`` of Aborts that are another one than the ``stored`` one of the same id.
+
+        A button sends the same id each time, and a desk without an answer repeats its request. It is the same
+        one if it is still to be carried out, or was asked a moment ago, and nothing moved the robot since.
+        """
+        again = {command.report.command for command in stored if self._is_over(command, now)}
+        return [order for order in orders if order.command in again]
+
+    def _is_over(self, abort: ActiveCommand, now: float) -> bool:
+        report = abort.report
+        if not abort.is_abort or abort.is_emergency:
+            return False
+        if any(c.is_motion and c.sa_id > abort.sa_id for c in self._open.of(report.robot)):
+            return True
+        return not report.state.is_open and abs(now - report.steps[0].at) > REPEATED_WITHIN_S
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message waiting in SA, by the message's id."""

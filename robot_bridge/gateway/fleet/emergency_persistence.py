@@ -553,7 +553,7 @@ class StopWriter:
 
 def abort_id(stop: StopRow, robot: str) -> str:
     """Return the id of the Abort of a robot for a stop: the same whenever it is stored."""
-    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{stop.id} {robot}"))
+    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"emergency {stop.id} {robot}"))
 
 
 def orders_of(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:

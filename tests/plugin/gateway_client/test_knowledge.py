@@ -255,6 +255,24 @@ def test_an_emergency_stop_of_another_desk_makes_void_what_waited_for_the_link_m
     assert void == ["go", "clear"]
 
 
+@pytest.mark.parametrize("cleared_at", [None, 1790000000.0])
+def test_a_stop_that_was_cleared_before_its_answer_came_is_not_made_again(site, cleared_at):
+    buffer = UpdateBuffer()
+    protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), buffer, ManualClock())
+    stop = {"command": "stop-0001"}
+    protocol.submit(OperatorRequest("mine", "emergency_stop", stop, requested_at=0.0, lasting=True))
+    (hello,) = protocol.begin()
+    report = {"in_force": cleared_at is None, "stop": "stop-0001", "cleared_at": cleared_at}
+    result = {"protocol": 1, "site": to_json(site), "emergency": report}
+    answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"], "result": result}
+    sent = [json.loads(text)["method"] for text in protocol.receive(json.dumps(answer))]
+    answers = [(one.order.key, one.error) for one in buffer.collect().answers]
+    if cleared_at is None:
+        assert sent[0] == "emergency_stop" and answers == []
+    else:
+        assert "emergency_stop" not in sent and answers == [("mine", None)]
+
+
 def test_of_a_target_and_its_abort_that_are_both_too_old_nobody_says_that_the_stop_ends_it(site):
     buffer, clock = UpdateBuffer(), ManualClock(uptime=50.0)
     protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), buffer, clock)

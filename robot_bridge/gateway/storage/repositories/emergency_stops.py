@@ -67,7 +67,7 @@ def changed(connection: Connection, ids: Collection[str], after: float) -> list[
     return [StopRow(*row) for row in connection.execute(select(*_COLUMNS).where(found).order_by(c.at))]
 
 
-def ids(connection: Connection, most: int = 1000) -> set[str]:
+def ids(connection: Connection, most: int = 100_000) -> set[str]:
     """Return the ids of the newest stops."""
     query = select(emergency_stops.c.id).order_by(emergency_stops.c.at.desc()).limit(most)
     return set(connection.scalars(query))

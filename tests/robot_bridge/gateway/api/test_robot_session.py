@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.errors import DataRefusedError, RefusedError, StoreError
 from robot_bridge.core.logs import IN_FULL, RepeatedLines
 from robot_bridge.core.messages.robots import OpAck, Ready
 from robot_bridge.core.sites.settings_tables import LimitSettings
@@ -343,7 +343,13 @@ async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from
     assert "link agvs: what robot 'r1' said failed" in caplog.text
 
 
-@pytest.mark.parametrize(("end", "waits"), [("stored", False), ("refused", False), ("away", True)])
+ENDS = {"away": StoreError("away"), "taken": RefusedError("taken"), "fenced": FencedError("elsewhere")}
+
+
+@pytest.mark.parametrize(
+    ("end", "waits"),
+    [("stored", False), ("refused", False), ("away", True), ("taken", False), ("fenced", False)],
+)
 async def test_a_robot_whose_ready_could_not_be_stored_is_sent_aborts_until_it_is_let_in_or_refused(
     own, end, waits
 ):
@@ -351,13 +357,13 @@ async def test_a_robot_whose_ready_could_not_be_stored_is_sent_aborts_until_it_i
 
     async def receive(_robot, _link, _ready, _id):
         assert sessions.applicant("r1") is own.session
-        if end == "away":
-            raise StoreError("away")
+        if end in ENDS:
+            raise ENDS[end]
         return RequestOutcome("r1", OpAck(ok=end == "stored", magic=1))
 
     own._fleet.receive, own._fleet.check_owned = receive, lambda _robot: None
     own._fleet.reception = SimpleNamespace(holds=sessions._claims)
-    with contextlib.suppress(StoreError):
+    with contextlib.suppress(StoreError, RefusedError):
         await own.session._ask(Ready(1), None)
     assert (sessions.applicant("r1") is own.session) == waits
     sessions.release(own.session)

@@ -13,9 +13,8 @@ from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.robots import Abort, SetPath
 from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands import requests
-from robot_bridge.gateway.commands.active_command import CommandOrder, KeptAbort
+from robot_bridge.gateway.commands.active_command import SENT_ON_S, YOUNG_S, CommandOrder, KeptAbort
 from robot_bridge.gateway.commands.persistence import insert_commands
-from robot_bridge.gateway.commands.service import SENT_ON_S, YOUNG_S
 from robot_bridge.gateway.fleet.robot_outboxes import RequestOutcome
 
 LOST = pytest.mark.parametrize(

@@ -98,15 +98,40 @@ async def test_a_motion_under_the_id_of_another_command_is_refused(ready, other)
         await ready.fleet.orders.send(Send("command-a", robot, op, {"x": 50, "y": 40}), "Ada")
 
 
-async def test_an_abort_under_the_id_of_an_earlier_one_stops_what_was_asked_since(ready):
+@pytest.mark.parametrize("all_robots", [True, False])
+async def test_an_abort_is_sent_once_although_the_clock_was_set_back_since_the_motion(ready, all_robots):
+    await ready.send("a")
+    await ready.acknowledge_all()
+    ready.now -= 100.0
+    if all_robots:
+        await ready.fleet.orders.abort_all(AbortAll("abort-all-1"), "Ada")
+    else:
+        await abort(ready, "x", robot="r1")
+    assert ready.waiting() == ["Abort"]
+
+
+@pytest.mark.parametrize(("later", "sent"), [(0.0, []), (59.0, []), (61.0, ["Abort"]), (-61.0, ["Abort"])])
+async def test_an_abort_under_the_id_of_one_that_was_done_long_ago_is_another_one(ready, later, sent):
+    """Nothing moves the robot at the moment, and its queue may in the next."""
+    await ready.send("a")
+    first = await abort(ready, "x", robot="r1")
+    await ready.acknowledge_all()
+    await ready.at(20.0, 40.0)
+    ready.now += later
+    again = await abort(ready, "x", robot="r1")
+    assert ready.waiting() == sent and (again.command == first.command) is (not sent)
+
+
+@pytest.mark.parametrize("step", [1.0, -1.0])
+async def test_an_abort_under_the_id_of_an_earlier_one_stops_what_was_asked_since(ready, step):
     def abort_all():
         return ready.fleet.orders.abort_all(AbortAll("abort-all-1"), "Ada")
 
     for again in (lambda: abort(ready, "x", robot="r1"), abort_all):
         for id in ("a", "b"):
-            ready.now += 1.0
+            ready.now += step
             await ready.send(f"{id}{again is abort_all}")
-            ready.now += 1.0
+            ready.now += step
             await again()
             assert (await ready.states())[f"{id}{again is abort_all}"] == "aborted"
             assert ready.waiting() == ["Abort"]

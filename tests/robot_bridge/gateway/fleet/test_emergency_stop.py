@@ -15,6 +15,7 @@ from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import GetCommands, Send
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.protocol.codec import decode_desk_request
 
 
 class Control:
@@ -192,6 +193,18 @@ async def test_under_the_id_of_one_that_was_cleared_it_is_another_one(two, contr
     last = await restarted.stop()
     assert last.in_force and last.stop not in ids
     assert control.called == [f"emergency-{id}" for id in ids] and len(restarted.called) == 1
+
+
+@pytest.mark.parametrize("id", ["stop-0001", "1"])
+async def test_it_is_sent_also_under_the_id_of_an_abort_of_all_robots(two, control, id):
+    all_robots = decode_desk_request("abort_all", {"command": id})
+    await two.fleet.orders.abort_all(all_robots, "Ada")
+    await two.acknowledge_all("r1")
+    await two.acknowledge_all("r2")
+    await two.send("b")
+    await two.acknowledge_all("r1")
+    await two.fleet.emergency.stop(decode_desk_request("emergency_stop", {"command": id}), "Ada")
+    assert control.outbox("r1") == control.outbox("r2") == [("Abort", True)]
 
 
 async def test_two_operators_at_once_are_both_heard_and_cleared_together(two, control):

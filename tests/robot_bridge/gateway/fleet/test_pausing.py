@@ -420,17 +420,34 @@ def left_elsewhere(line, **how):
     line.yard.fleet._commands.keep_left([KeptAbort(order, line.yard.clock.time(), is_left=True)])
 
 
-@pytest.mark.parametrize(("of_pause", "aborts"), [(True, 1), (False, 2)])
+@pytest.mark.parametrize(("of_pause", "kept"), [(True, [60.0]), (False, [])])
 async def test_what_a_pause_at_another_gateway_has_left_is_not_stored_behind_one_that_succeeds(
-    line, of_pause, aborts
+    line, of_pause, kept
 ):
+    """An operator's Abort is stored before: the task that it ends is not kept."""
     await line.yard.send("x", x=60.0, y=40.0)
     await line.yard.acknowledge_all()
     left_elsewhere(line, of_pause=of_pause)
     report = await pause(line)
     await line.yard.fleet.save()
-    assert [one.x for one in report.tasks] == [60.0]
-    assert (await line.sent()).count("Abort") == aborts
+    assert [one.x for one in report.tasks] == kept
+    assert (await line.sent()).count("Abort") == 1
+
+
+@pytest.mark.parametrize("abort_first", [True, False])
+async def test_a_failed_pause_takes_the_place_of_no_abort_that_could_not_be_stored(line, lose, abort_first):
+    await line.yard.send("x", x=60.0, y=40.0)
+    await line.yard.acknowledge_all()
+    abort = line.yard.fleet.orders.abort
+    for is_abort in (abort_first, not abort_first):
+        lose(line.yard, insert_commands, False, StoreError)
+        with pytest.raises(StoreError):
+            await (abort(AbortTask("abort-0001", "r1"), "Ada") if is_abort else pause(line))
+    assert (await pause(line)).tasks == []
+    await line.yard.fleet.save()
+    assert "Abort" in await line.sent()
+    await line.yard.acknowledge_all()
+    assert (await line.yard.states())["x"] == "aborted"
 
 
 async def test_what_a_pause_has_left_does_not_hold_a_queue_that_is_resumed_after_it(line):
