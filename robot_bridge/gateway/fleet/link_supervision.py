@@ -230,7 +230,7 @@ async def claim_refusal(
 
 log = logging.getLogger(__name__)
 
-FIRST_WAIT, LONGEST_WAIT = 1.0, 60.0
+FIRST_WAIT, LONGEST_WAIT = 1.0, 10.0
 """seconds between two starts; each time twice as long, until one has lasted for LONGEST_WAIT."""
 END_WITHIN = 1.0
 """seconds for a process to end in good order: a gateway ends within five in all."""
