@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QEvent, QObject, Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QAction, QFrame, QHBoxLayout, QToolButton, QWidget
+from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
 
 from ...robot_bridge.core.messages.safety import EmergencyReport
 from ..control.fleet_controller import FleetController
@@ -19,31 +19,42 @@ BARE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
 
 
 class EmergencyKey(QObject):
-    """Triggers ``action`` by its keys before any shortcut or widget is asked, also over a dialog.
+    """Triggers ``action`` by its keys in ``window``, and in any other that is active, before any shortcut.
 
     Qt calls a key ambiguous that another action has as well, and then performs neither; and it disables the
-    shortcuts of a window that a dialog blocks.
+    shortcuts of a window that a dialog blocks. Windows are watched, and not the application: Python cannot
+    hold each object that QGIS sends events to while it starts, and QGIS would end.
     """
 
-    def __init__(self, action: QAction, parent: QObject):
+    def __init__(self, action: QAction, window: QWidget, parent: QObject):
         super().__init__(parent)
         self._action = action
         self._keys = [getattr(Qt.Key, f"Key_{key}") for key in EMERGENCY_KEYS]
-        QgsApplication.instance().installEventFilter(self)
+        self._is_removed = False
+        window.installEventFilter(self)
+        QgsApplication.instance().focusWindowChanged.connect(self._watch_active)
 
     def remove(self) -> None:
         """Leave the keys to others."""
-        QgsApplication.instance().removeEventFilter(self)
+        self._is_removed = True
+        QgsApplication.instance().focusWindowChanged.disconnect(self._watch_active)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         kind = event.type()
-        if kind not in KEY_EVENTS or event.key() not in self._keys or event.modifiers() not in BARE:
+        if self._is_removed or kind not in KEY_EVENTS:
+            return False
+        if event.key() not in self._keys or event.modifiers() not in BARE:
             return False
         # The first of the two, accepted, keeps the key from all shortcuts: it comes again as the second.
         event.accept()
-        if kind == QEvent.Type.KeyPress and not event.isAutoRepeat():
+        if kind == QEvent.Type.ShortcutOverride and not event.isAutoRepeat():
             self._action.trigger()
         return True
+
+    def _watch_active(self) -> None:
+        for window in (QApplication.activeModalWidget(), QApplication.activeWindow()):
+            if window is not None:
+                window.installEventFilter(self)
 
 
 STYLE = (

@@ -138,7 +138,7 @@ class FleetWindow(QObject):
     def _build(self, window: QMainWindow) -> None:
         self.actions = Actions(self)
         self.notices = self._add(MessageBar(self._iface.messageBar(), self))
-        self._key = self._add(EmergencyKey(self.actions.emergency, self))
+        self._key = self._add(EmergencyKey(self.actions.emergency, self._iface.mainWindow(), self))
         self._add(QuitGuard(self._iface, self.desk.orders))
         self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
         self.view = self._add(LiveView(self.desk, self))
