@@ -6,13 +6,15 @@ import asyncio
 import contextlib
 import logging
 import os
+import subprocess
 import sys
+import threading
 import time
 from collections import Counter, defaultdict, deque
 from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import IO, Any, Protocol
 
 import msgspec
 
@@ -234,6 +236,8 @@ FIRST_WAIT, LONGEST_WAIT = 1.0, 10.0
 """seconds between two starts; each time twice as long, until one has lasted for LONGEST_WAIT."""
 END_WITHIN = 1.0
 """seconds for a process to end in good order: a gateway ends within five in all."""
+LONGEST_LINE = 65_536
+"""bytes; longer than any line of a log."""
 URL = "ROBOT_BRIDGE_LINK_URL"
 """The environment variable with the URL of the gateway for a link, unless its settings have one."""
 
@@ -278,25 +282,67 @@ class LinkProcesses:
     async def _run_once(self, one: LinkProcess, url: str) -> str:
         """Run a link to its end; return the reason why it ended."""
         try:
-            process = await asyncio.create_subprocess_exec(
-                *(sys.executable, "-m", "robot_bridge", "link", one.kind, "--config", str(one.file)),
-                "--until-stdin-closes",
-                stdin=asyncio.subprocess.PIPE,
-                stderr=asyncio.subprocess.PIPE,
-                env=_environment(url),
-            )
+            process = _Process(one, url)
         except OSError as error:
             return f"it cannot be started: {error.strerror or error}"
         one.starts, one.pid, one.fault = one.starts + 1, process.pid, None
         log.info("link %s runs as process %d", one.name, process.pid)
-        passing = asyncio.create_task(_pass_on(process.stderr))
         try:
-            status = await process.wait()
-            return await passing or f"exit status {status}"
+            return await process.wait()
         finally:
             one.pid = None
-            await _end(process)
-            passing.cancel()
+            await process.end()
+
+
+class _Process:
+    """A running link; a thread passes on its output, and waits for its end.
+
+    Not a subprocess of the loop: uvloop forks, and its copy of this process may wait for ever at a lock that
+    another thread held just then, such as one of SQLite, and the loop waits for the copy.
+    """
+
+    def __init__(self, one: LinkProcess, url: str) -> None:
+        self._process = subprocess.Popen(
+            [
+                *(sys.executable, "-m", "robot_bridge", "link", one.kind, "--config", str(one.file)),
+                "--until-stdin-closes",
+            ],
+            stdin=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=_environment(url),
+        )
+        self.pid = self._process.pid
+        self._reason = ""
+        self._ended = asyncio.Event()
+        loop = asyncio.get_running_loop()
+        threading.Thread(target=self._follow, args=(loop,), name=f"link {one.name}", daemon=True).start()
+
+    async def wait(self) -> str:
+        """Wait for its end; return the reason."""
+        await self._ended.wait()
+        return self._reason
+
+    async def end(self) -> None:
+        """End it if it runs, in good order if possible."""
+        if self._ended.is_set():
+            return
+        self._process.terminate()
+        try:
+            async with asyncio.timeout(END_WITHIN):
+                await self._ended.wait()
+        except TimeoutError:
+            self._process.kill()
+            await self._ended.wait()
+
+    def _follow(self, loop: asyncio.AbstractEventLoop) -> None:
+        with self._process as process:
+            assert process.stderr is not None
+            last = _pass_on(process.stderr)
+            status = process.wait()
+        self._reason = last or f"exit status {status}"
+        # The loop may have ended before.
+        with contextlib.suppress(RuntimeError):
+            loop.call_soon_threadsafe(self._ended.set)
 
 
 def _environment(url: str) -> Mapping[str, str]:
@@ -306,36 +352,15 @@ def _environment(url: str) -> Mapping[str, str]:
     return {**own, URL: url}
 
 
-async def _pass_on(lines: asyncio.StreamReader | None) -> str:
+def _pass_on(lines: IO[bytes]) -> str:
     """Write a link's output into this log's stream; return its last line, the reason why it ended."""
     last = ""
-    while lines is not None and (line := await _line(lines)):
+    while line := lines.readline(LONGEST_LINE).decode("utf-8", "replace"):
         # Whatever becomes of the line: a link whose output nobody reads comes to a halt.
         with contextlib.suppress(OSError):
             sys.stderr.write(line)
         last = line.strip() or last
     return last.removeprefix("robot-bridge: ")[:300]
-
-
-async def _line(lines: asyncio.StreamReader) -> str:
-    try:
-        return (await lines.readline()).decode("utf-8", "replace")
-    except ValueError:  # longer than any line of a log
-        return (await lines.read(65_536)).decode("utf-8", "replace")
-
-
-async def _end(process: asyncio.subprocess.Process) -> None:
-    if process.returncode is not None:
-        return
-    with contextlib.suppress(ProcessLookupError):
-        process.terminate()
-    try:
-        async with asyncio.timeout(END_WITHIN):
-            await process.wait()
-    except TimeoutError:
-        with contextlib.suppress(ProcessLookupError):
-            process.kill()
-        await process.wait()
 
 
 # --- Suspension of robots' database accounts that block the others repeatedly

@@ -13,6 +13,7 @@ import urllib.request
 from types import SimpleNamespace
 
 import pytest
+import uvloop
 
 from robot_bridge.core.sites.settings_tables import LinkOptions
 from robot_bridge.gateway.fleet import link_supervision
@@ -65,12 +66,31 @@ class FullStream(io.StringIO):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-async def test_a_link_is_read_to_its_end_where_its_lines_cannot_be_written(monkeypatch):
+def test_a_link_is_read_to_its_end_where_its_lines_cannot_be_written(monkeypatch):
     monkeypatch.setattr(sys, "stderr", FullStream())
-    lines = asyncio.StreamReader()
-    lines.feed_data(b"WARNING one\nrobot-bridge: the last\n")
-    lines.feed_eof()
-    assert await link_supervision._pass_on(lines) == "the last"
+    assert link_supervision._pass_on(io.BytesIO(b"WARNING one\nrobot-bridge: the last\n")) == "the last"
+
+
+FORKS = []
+os.register_at_fork(before=lambda: FORKS.append("fork"))
+
+
+def test_a_link_is_started_without_a_fork_of_this_python(tmp_path):
+    """In a forked copy a lock may be held for ever that another thread had, and uvloop waits for the copy."""
+
+    async def run_once():
+        links = LinkProcesses(LinkOptions(tracker=("none.toml",)), tmp_path)
+        async with asyncio.timeout(60):
+            running = asyncio.create_task(links.run("ws://127.0.0.1:1/link"))
+            while not (links.states[0].starts and links.states[0].fault):
+                await asyncio.sleep(0.01)
+        running.cancel()
+        return links.states[0].fault
+
+    FORKS.clear()
+    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+        assert "none.toml" in runner.run(run_once())
+    assert not FORKS
 
 
 def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
