@@ -141,7 +141,10 @@ class BackgroundStream(io.TextIOBase):
         return True
 
     def write(self, text: str) -> int:
-        """Have ``text`` written soon; it is dropped while too much waits."""
+        """Have ``text`` written soon; it is dropped while too much waits. Raises TypeError for bytes."""
+        if not isinstance(text, str):
+            # Typer finds out so whether a stream is one of bytes.
+            raise TypeError(f"{self._name} is written as text, not as {type(text).__name__}")
         with self._changed:
             if self._unwritten >= MOST_UNWRITTEN:
                 self._dropped += text.count("\n")

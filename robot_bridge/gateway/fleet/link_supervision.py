@@ -302,7 +302,7 @@ class _Process:
     """
 
     def __init__(self, one: LinkProcess, url: str) -> None:
-        self._process = subprocess.Popen(
+        self._process = subprocess.Popen(  # nosec B603 # our own words, no shell
             [
                 *(sys.executable, "-m", "robot_bridge", "link", one.kind, "--config", str(one.file)),
                 "--until-stdin-closes",

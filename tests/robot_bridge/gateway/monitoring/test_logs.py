@@ -115,6 +115,8 @@ def pipe():
 def test_lines_beyond_those_that_wait_are_dropped_and_counted_when_the_rest_is_read(root_log, pipe):
     reader, writer = pipe
     stream = BackgroundStream("standard error", writer)
+    with pytest.raises(TypeError, match="written as text"):
+        stream.write(b"")
     set_up_log(stream=stream)
     count = 2 * MOST_UNWRITTEN // 100
     for number in range(count):
