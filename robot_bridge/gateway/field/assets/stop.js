@@ -66,6 +66,11 @@ export class EmergencyStop {
   update(report) {
     // What was not stopped, or not cleared, is over with the next stop.
     if (report.in_force !== this._report?.in_force || report.stop !== this._report?.stop) this._failure = "";
+    if (this._trying && this._trying.command === report.stop && !report.in_force) {
+      // It has arrived, and is over. Asked again it would be another one.
+      this._trying = null;
+      this._failure = clearedSince(report);
+    }
     this._report = report;
     this._reportedAt = steadyNow();
     if (this._armed && this._armed.stop !== report.stop) this._disarm();
@@ -122,10 +127,11 @@ export class EmergencyStop {
         this.update(report);
         if (!report.in_force) {
           // It was answered late, and is over: who pressed does not know of either.
-          this._failure = tr("The stop was in force, and {who} has cleared it since.", { who: report.cleared_by ?? "?" });
+          this._failure = clearedSince(report);
           this.show();
         }
       } catch (error) {
+        if (this._trying !== stop) return;
         if (!error.silent) {
           this._trying = null;
           this._failure = tr("NOT STOPPED: {reason}", { reason: error.message });
@@ -165,6 +171,10 @@ export class EmergencyStop {
     this._armed = null;
     this.show();
   }
+}
+
+function clearedSince(report) {
+  return tr("The stop was in force, and {who} has cleared it since.", { who: report.cleared_by ?? "?" });
 }
 
 function named(robots, more = 0) {
