@@ -223,7 +223,12 @@ def test_a_robot_on_sql_that_said_stopped_goes_offline(bridge):
         ("subscribe", {"view": {"bounds": [5, 0, 5, 9]}}, -32602, r"subscribe: bounds is \[5"),
         ("subscribe", {"rate": "fast"}, -32602, r"subscribe: .*\$\.rate"),
         ("get_commands", {"limit": -1}, -32602, "get_commands: limit is -1"),
-        ("send", {"command": "id", "robot": "x", "op": "Abort"}, -32602, "command is 'id'; give an id of 8"),
+        (
+            "send",
+            {"command": "id", "robot": "x", "op": "SetPosEnd"},
+            -32602,
+            "command is 'id'; give an id of 8",
+        ),
         ("send", {"command": "a-command", "robot": "nobody", "op": "Abort"}, -32000, "robot 'nobody' is not"),
         ("send", {"command": "a-command", "robot": "a b", "op": "Abort"}, -32602, "robot name 'a b' cannot"),
         ("set_positions", {"positions": [{"robot": "nobody", "x": 1, "y": 2}]}, -32000, "is not known"),

@@ -184,19 +184,21 @@ def test_get_map_over_plain_sql_is_answered_with_a_square_map(sql_robot):
 
 
 def test_junk_in_rr_is_answered_and_removed(bridge, sql_robot):
+    """Under a name that no robot may have nobody would read an answer."""
+    bridge.sql("insert into rr (robot, op) values ('no robot', 'Alive')")
     robot = sql_robot("sql3")
     robot.say("Ready", magic=1)
     robot.read("OpAck")
     for name, op, params, reason in (
         ("sql3", "SendPos", "{", "SendPos: params is not JSON"),
         ("sql3", "Fly", None, "unknown operation 'Fly'"),
-        ("no robot", "Alive", None, "robot name 'no robot' cannot be used"),
     ):
         bridge.sql("insert into rr (robot, op, params) values (?, ?, ?)", name, op, params)
         _, ack, _ = SqlRobot(bridge.database, name).read("OpAck")
         assert ack["ok"] is False
         assert reason in ack["reason"]
     wait_until(lambda: bridge.sql("select id from rr where robot in ('sql3', 'no robot')") == [])
+    assert bridge.sql("select id from sa where robot = 'no robot'") == []
 
 
 # --- who is not let in ------------------------------------------------------------------------------------
