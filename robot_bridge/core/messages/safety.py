@@ -54,6 +54,7 @@ def understood_stop(request: type[DeskRequest[Any]], params: object) -> dict[str
     reason that does not fit a line of the log is adapted.
     """
     given = dict(params) if isinstance(params, dict) else {}
+    # Each request is a dataclass, which its base does not say.
     known = {field.name: field for field in fields(request)}  # type: ignore[arg-type]
     sent = given.get("command")
     if "command" in known and (sent is not None or known["command"].default is MISSING):

@@ -268,13 +268,10 @@ class RobotSession:
             outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
             if outcome.admitted:
                 self._fleet.check_owned(self.robot)
-        except StoreError as error:
-            # It says Ready again, unless another gateway has the robot.
-            if isinstance(error, FencedError):
+        except Exception as error:
+            # Where the database does not answer it says Ready again, and hears Aborts until then.
+            if isinstance(error, FencedError) or not isinstance(error, StoreError):
                 self._sessions.refuse(self)
-            raise
-        except Exception:
-            self._sessions.refuse(self)
             raise
         if not outcome.admitted:
             self._sessions.refuse(self)

@@ -398,9 +398,9 @@ class CommandService(CommandReader):
             order = kept.order
             with log_and_continue(log, f"storing Abort {order.command}", except_for=StoreError):
                 try:
-                    newest = [order.robot, 1, MOTION_OPS]
-                    for motion in await self._database.run(commands.newest, *newest) if kept.is_left else ():
-                        kept.check_not_sent_on(motion, self._clock.time())
+                    if kept.is_left:
+                        for motion in await self._database.run(commands.newest, order.robot, 1, MOTION_OPS):
+                            kept.check_not_sent_on(motion, self._clock.time())
                     await self._store([order], [None], None)
                 except (DataRefusedError, RefusedError) as error:
                     log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
