@@ -39,10 +39,14 @@ def thumbnails(qgis_app):
 def made(thumbnails, photo, wait):
     """Make the pictures of these observations."""
 
+    failed = []
+    thumbnails.failed.connect(failed.append)
+
     def make(*numbers):
         for number in numbers:
             assert thumbnails.make(number, photo)
-        wait(lambda: all(map(thumbnails.file, numbers)), what="the pictures")
+        wait(lambda: failed or all(map(thumbnails.file, numbers)), 15, "the pictures")
+        assert not failed
 
     return make
 

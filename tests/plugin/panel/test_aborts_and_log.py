@@ -69,6 +69,8 @@ def test_what_is_not_sent_to_many_robots_or_answered_late_is_one_message(
     at_desk.desk.close_link()
     wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
     wait(lambda: len(at_desk.desk.orders) == 0, what="the answers")
+    # The message bar deletes a message once Qt has time for it.
+    wait(lambda: text not in iface.texts(), what="the end of the message")
     (text,) = iface.texts()
     at_desk.actions.pause.trigger()
     told = [one for one in iface.texts() if one != text]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.databases.database_client import DatabaseClient
+from tests.support.databases.database_client import LOCKS, DatabaseClient, tables_locked
 from tests.support.robots.robot_wires import SqlRobot
 from tests.support.wire import RefusedError
 
@@ -116,30 +116,11 @@ def test_a_robot_stands_whose_pause_cannot_be_stored_and_its_queue_waits_afterwa
     assert [call for call in robot.calls if call["method"] in MOTIONS] == []
 
 
-LOCKS = {
-    "postgresql": ("begin", "lock table {} in access exclusive mode", "rollback"),
-    "mariadb": ("lock tables {} write", "unlock tables"),
-}
-
-
 @pytest.fixture(params=sorted(LOCKS))
 def served(start_bridge, sample_site, new_database, request):
     bridge = start_bridge(sample_site, new_database(request.param))
     yield bridge
     bridge.end()
-
-
-@contextlib.contextmanager
-def tables_locked(bridge, *tables):
-    """Hold tables as an administrator's session does that adds a column, or was left in a transaction."""
-    kind = bridge.database.partition(":")[0]
-    joined = ", ".join(tables) if kind == "postgresql" else " write, ".join(tables)
-    *begin, end = LOCKS[kind]
-    with contextlib.closing(DatabaseClient(bridge.database)) as client:
-        for statement in begin:
-            client.sql(statement.format(joined))
-        yield
-        client.sql(end)
 
 
 @pytest.fixture
@@ -158,7 +139,7 @@ def reader(served):
 
 def test_a_stop_comes_to_robots_on_sql_while_tables_are_locked_that_they_do_not_read(served, reader):
     desk = served.desk()
-    with tables_locked(served, "commands", "emergency_stops"):
+    with tables_locked(served.database, "commands", "emergency_stops"):
         state = desk.ask("emergency_stop", {"command": "stop-0001", "reason": "smoke"}, 30.0)
         assert (state["in_force"], state["stored"]) == (True, False)
         assert reader.hear("Abort") == {"emergency": True}
@@ -172,7 +153,7 @@ def test_an_abort_comes_to_a_robot_on_sql_while_no_command_can_be_stored(served,
     desk = served.desk()
     params = {"command": "abort-it-1", **whom}
     text = r"somebody else has it locked.*The Abort is not stored; it was sent to s1 all the same; it is "
-    with tables_locked(served, "commands"):
+    with tables_locked(served.database, "commands"):
         with pytest.raises(RefusedError, match=text):
             desk.ask("abort", params, 30.0)
         assert reader.hear("Abort") == {"emergency": False}
@@ -187,7 +168,7 @@ def test_what_one_session_has_locked_keeps_nobody_from_what_is_not_locked(served
     desk.send("target-it-2", "r1", "SetPosEnd", x=50.0, y=40.0)
     target = driven.wait_for("SetPosEnd")
     desk.wait_for_step("target-it-2", "delivered")
-    with tables_locked(served, "commands"):
+    with tables_locked(served.database, "commands"):
         driven.say(target["id"])
         asked = [desk.begin("get_commands", {"limit": 5}) for _ in range(3)]
         new = served.robot("r2")
@@ -209,7 +190,7 @@ def test_a_robot_on_its_way_that_connects_again_hears_an_abort_while_robots_are_
     desk.send("target-it-2", "r1", "SetPosEnd", x=50.0, y=40.0)
     driven.say(driven.wait_for("SetPosEnd")["id"])
     desk.wait_for_step("target-it-2", "acknowledged")
-    with tables_locked(served, "robots", "trajectories"):
+    with tables_locked(served.database, "robots", "trajectories"):
         stand(driven)
         again, new = served.robot("r1"), served.robot("r3")
         assert again.ask("Ready", {"magic": 1}, seconds=30.0)["ok"]
@@ -236,14 +217,14 @@ def test_a_robot_that_restarts_hears_an_abort_while_robots_are_locked(served):
         desk.send("target-it-1", "r1", "SetPosEnd", x=50.0, y=40.0)
         before.say(before.wait_for("SetPosEnd")["id"])
         desk.wait_for_step("target-it-1", "acknowledged")
-    with tables_locked(served, "robots"):
+    with tables_locked(served.database, "robots"):
         robot = served.robot("r1")
         with pytest.raises(RefusedError, match="locked"):
             robot.ask("Ready", {"magic": 2}, seconds=30.0)
         desk.ask("abort", {"command": "abort-it-1", "robot": "r1"}, 30.0)
         assert robot.wait_for("Abort")["id"] == "abort-abort-it-1"
         robot.calls.clear()
-        with tables_locked(served, "commands"):
+        with tables_locked(served.database, "commands"):
             with pytest.raises(RefusedError, match="The Abort is not stored; it was sent to r1"):
                 desk.ask("abort", {"command": "abort-it-2", "robot": "r1"}, 30.0)
             assert robot.wait_for("Abort")["id"] == "abort-abort-it-2"

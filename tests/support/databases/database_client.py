@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import sqlite3
+from collections.abc import Iterator
 from typing import Any
 
 from sqlalchemy import make_url
@@ -59,3 +60,24 @@ class DatabaseClient:
             return self.driver.connect(**where, dbname=self.url.database)
         limits = {"read_timeout": PATIENCE_S, "write_timeout": PATIENCE_S, "init_command": LEVEL}
         return self.driver.connect(**where, **limits, database=self.url.database)
+
+
+LOCKS = {
+    "postgresql": ("begin", "lock table {} in access exclusive mode", "rollback"),
+    "mariadb": ("lock tables {} write", "unlock tables"),
+}
+
+
+@contextlib.contextmanager
+def tables_locked(url: str, *tables: str) -> Iterator[None]:
+    """Hold tables as an administrator's session does that adds a column, or was left in a transaction.
+
+    They are released by a statement: a server ends a session some time after its connection.
+    """
+    with contextlib.closing(DatabaseClient(url)) as administrator:
+        joined = ", ".join(tables) if administrator.kind == "postgresql" else " write, ".join(tables)
+        *begin, end = LOCKS[administrator.kind]
+        for statement in begin:
+            administrator.sql(statement.format(joined))
+        yield
+        administrator.sql(end)

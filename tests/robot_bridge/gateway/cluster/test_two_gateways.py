@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, announced_gateways, clear, desk_at, stop
-from tests.support.databases.database_client import DatabaseClient
+from tests.support.databases.database_client import DatabaseClient, tables_locked
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port, freeze
@@ -417,16 +417,6 @@ def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
     pair.a.start_gateway()
 
 
-@contextlib.contextmanager
-def locked(bridge, table):
-    """Hold a table, as an administrator's session does that was left in a transaction."""
-    with contextlib.closing(DatabaseClient(bridge.database)) as client:
-        client.sql("begin")
-        client.sql(f"lock table {table} in access exclusive mode")
-        yield
-        client.sql("rollback")
-
-
 def abort_in_vain(pair, name):
     """Have gateway a, which is killed then, send its robot an Abort that cannot be stored."""
     robot, desk = pair.robot(pair.a, name), desk_at(pair.a)
@@ -434,7 +424,7 @@ def abort_in_vain(pair, name):
     desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
     robot.wait_for("SetPosEnd")
     desk.wait_for_step(f"c-{name}", "delivered")
-    with locked(pair.b, "commands"):
+    with tables_locked(pair.b.database, "commands"):
         with pytest.raises(RefusedError, match=f"The Abort is not stored; it was sent to {name}"):
             desk.ask("abort", {"command": f"abort-{name}", "robot": name}, 30.0)
         robot.wait_for("Abort")
@@ -482,7 +472,7 @@ def test_a_pause_that_cannot_be_asked_of_a_robots_gateway_is_an_abort_over_the_b
     desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
     robot.hear("SetPosEnd")
     desk.wait_for_step(f"c-{name}", "acknowledged")
-    with locked(pair.b, "relayed_requests"):
+    with tables_locked(pair.b.database, "relayed_requests"):
         text = (
             f"The pause is not stored; an Abort was sent over the bus to the gateways of {name}; it is stored"
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import shutil
 import sqlite3
 import threading
@@ -20,7 +19,7 @@ from robot_bridge.gateway.storage.database import WRONG_AT_ONCE_S, Database
 from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
 from tests.support.bridge.busy_database import done_together
-from tests.support.databases.database_client import DatabaseClient
+from tests.support.databases.database_client import LOCKS, tables_locked
 from tests.support.patience import START
 
 
@@ -289,13 +288,6 @@ async def test_two_transactions_that_lock_each_other_out_are_both_done(url):
     await two.close()
 
 
-LOCKS = {
-    "postgresql": ["begin", "lock table rr in access exclusive mode"],
-    "mariadb": ["lock tables rr write"],
-}
-"""What an administrator's session does to a table, who is ended by nobody."""
-
-
 @pytest.mark.parametrize("kind", sorted(LOCKS), indirect=True)
 async def test_what_waits_for_a_lock_in_vain_fails_alone_and_soon(url, kind, database):
     def add_counted(connection, robot):
@@ -306,9 +298,7 @@ async def test_what_waits_for_a_lock_in_vain_fails_alone_and_soon(url, kind, dat
         connection.execute(insert(sa).values(robot=robot, op="Start"))
 
     tried = []
-    with contextlib.closing(DatabaseClient(url)) as administrator:
-        for statement in LOCKS[kind]:
-            administrator.sql(statement)
+    with tables_locked(url, "rr"):
         asked = [database.run(add_counted, "r1"), database.run(answer, "r2"), database.read(names)]
         refused, done, unread = await done_together(database, *asked)
         assert done is None
@@ -336,9 +326,7 @@ async def test_a_lock_that_is_met_again_and_again_is_waited_for_once_in_a_while(
         tried.append(robot)
         add(connection, robot)
 
-    with contextlib.closing(DatabaseClient(url)) as administrator:
-        for statement in LOCKS[kind]:
-            administrator.sql(statement)
+    with tables_locked(url, "rr"):
         until = time.monotonic() + 60.0
         # On a busy machine the next one may come after that while.
         while (attempts.count(2) < 2 or 1 not in attempts) and time.monotonic() < until:
