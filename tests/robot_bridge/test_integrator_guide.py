@@ -28,7 +28,10 @@ from tests.support.bridge.command_line import run_command
 from tests.support.wire import RefusedError
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
+GUIDE = "\n".join(
+    (ROOT / "docs" / page).read_text(encoding="utf-8")
+    for page in ("integrator.md", "robots-sql.md", "desk-protocol.md")
+)
 BLOCKS = re.findall(r"^```(\w+) ([\w -]+)\n(.*?)^```$", GUIDE, re.DOTALL | re.MULTILINE)
 OF_THE_GATEWAY = {"gateways", "geofence", "links", "nearness", "site", "stopping", "suspensions"}
 """What operators are told of robots in keepouts or near people, of a new site, and when the gateway ends."""
@@ -157,7 +160,7 @@ def test_every_code_with_which_a_robot_is_closed_is_explained():
 
 def test_the_columns_are_those_of_the_tables(bridge):
     named = re.findall(
-        r"^\| (\w+) \| ", GUIDE.split("## Over SQL")[1].split("Robots insert")[0], re.MULTILINE
+        r"^\| (\w+) \| ", GUIDE.split("# Robots over SQL")[1].split("Robots insert")[0], re.MULTILINE
     )
     for table, described in (("rr", named[1:-1]), ("sa", named[1:])):
         columns = [name for _, name, *_ in bridge.sql(f"pragma table_info({table})")]

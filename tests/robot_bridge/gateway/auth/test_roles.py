@@ -16,7 +16,7 @@ from tests.support.wire import RefusedError
 VIEWER, OPERATOR, SUPERVISOR = "viewer", "operator", "supervisor"
 ROLES = [VIEWER, OPERATOR, SUPERVISOR]
 
-GUIDE = (Path(__file__).parents[4] / "docs" / "integrator.md").read_text(encoding="utf-8")
+GUIDE = (Path(__file__).parents[4] / "docs" / "desk-protocol.md").read_text(encoding="utf-8")
 
 LEAST = {
     method: role

@@ -21,7 +21,7 @@ from tests.support.patience import START
 from tests.support.processes import Processes
 
 ROOT = Path(__file__).resolve().parents[5]
-GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs" / "robots-sql.md").read_text(encoding="utf-8")
 OPERATION = (ROOT / "docs" / "operation.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+) ([\w -]+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 DATABASE_ID = re.compile(r'"database": "[^"]+"')
