@@ -23,7 +23,7 @@ from ..gateway_client.command_cache import (
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.state_words import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
-from ..ui.language import date_and_time, short_time, tr
+from ..ui.language import date_and_time, plain_tip, short_time, tr
 from ..ui.tables import iso_time
 
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
@@ -232,7 +232,8 @@ class LogModel(QAbstractItemModel):
                 requested_at(report) if index.internalId() == 0 else report.steps[index.row()].at
             )
         if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            return self._cells(index, report)[index.column()]
+            text = self._cells(index, report)[index.column()]
+            return text if role == Qt.ItemDataRole.DisplayRole else plain_tip(text)
         if role == COMMAND_ROLE:
             return report.command
         if index.column() == STATE and role in (Qt.ItemDataRole.ForegroundRole, Qt.ItemDataRole.FontRole):

@@ -27,7 +27,7 @@ from ..control.request_tracker import RequestTracker
 from ..gateway_client.fleet_state import FleetState, RequestResult
 from ..gateway_client.state_words import MEETINGS
 from ..ui.errors import NotSentError
-from ..ui.language import time_of_day, tr
+from ..ui.language import plain_tip, time_of_day, tr
 from ..ui.steady_widgets import ElidedButton, ElidedText
 from ..ui.tables import shrink_view
 
@@ -201,7 +201,7 @@ class ConflictPanel(QWidget):
             if pair not in listed:
                 item = QListWidgetItem(_in_words(conflict), self._list)
                 item.setData(PAIR, pair)
-                item.setToolTip(item.text())
+                item.setToolTip(plain_tip(item.text()))
         self._list_waiting(roads.waiting)
         if not self._list.count():
             self._add_note(NONE)
@@ -225,7 +225,7 @@ class ConflictPanel(QWidget):
                 listed.add(pair)
                 item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable)
                 item.setText(_in_words(conflict))
-            item.setToolTip(item.text())
+            item.setToolTip(plain_tip(item.text()))
         return listed
 
     def _drop_over(self) -> None:
@@ -249,7 +249,7 @@ class ConflictPanel(QWidget):
     def _add_note(self, text: str) -> None:
         note = QListWidgetItem(text, self._list)
         note.setFlags(Qt.ItemFlag.ItemIsEnabled)
-        note.setToolTip(text)
+        note.setToolTip(plain_tip(text))
 
     def _items(self) -> list[QListWidgetItem]:
         rows = [self._list.item(row) for row in range(self._list.count())]

@@ -44,7 +44,7 @@ from ..gateway_client.state_words import (
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, NotSentError
 from ..ui.glyphs import WRONG, WRONG_STYLE, for_letters
-from ..ui.language import tr
+from ..ui.language import plain_tip, tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
 from ..ui.tables import RowModel, ZoomMenu, shrink_view
 
@@ -265,7 +265,7 @@ class TaskModel(RowModel):
             return (str(index.row() + 1), task_in_words(task), task_state_in_words(task))[column]
         if role == Qt.ItemDataRole.ToolTipRole:
             added = tr("added by {by}", by=task.added_by)
-            return f"{task_in_words(task)}\n{task_state_in_words(task)}\n{added}"
+            return plain_tip(f"{task_in_words(task)}\n{task_state_in_words(task)}\n{added}")
         if role == Qt.ItemDataRole.FontRole and task.state is TaskState.CURRENT:
             bold = QFont()
             bold.setBold(True)

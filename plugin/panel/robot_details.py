@@ -36,7 +36,7 @@ from ..gateway_client.robot_states import RobotView
 from ..gateway_client.state_words import task_state_in_words as task_state
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import FleetError, MapTransformError
-from ..ui.language import date_and_time, last_seen_in_words, time_of_day, tr
+from ..ui.language import date_and_time, last_seen_in_words, plain_tip, time_of_day, tr
 from ..ui.scheduling import SignallingTask
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
@@ -470,4 +470,4 @@ def _write(section: QTreeWidgetItem, rows: list[Row]) -> None:
         for column, text in enumerate(row):
             if item.text(column) != text:
                 item.setText(column, text)
-                item.setToolTip(column, text)
+                item.setToolTip(column, plain_tip(text))

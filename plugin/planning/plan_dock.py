@@ -31,7 +31,7 @@ from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import ShrinkableScrollArea, confirm, push_button
 from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
-from ..ui.language import first_of, tr, tr_count
+from ..ui.language import first_of, plain_tip, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from . import plan_texts
 from .as_placed import AsPlacedPage
@@ -157,7 +157,8 @@ class ExecutionBar(QWidget):
         self.by_itself.setEnabled(report is None)
         text, shown = self._in_words(report), driven.shown_plan
         self.text.setText(text)
-        self.text.setToolTip("\n".join([text, *([] if shown is None else [plan_texts.method_text(shown)])]))
+        method = [] if shown is None else [plan_texts.method_text(shown)]
+        self.text.setToolTip(plain_tip("\n".join([text, *method])))
         self.trouble.setText(self._wrong(report))
         self.trouble.set_text_style(WRONG_STYLE if self.trouble.text() else "")
 

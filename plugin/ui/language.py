@@ -7,6 +7,7 @@ are shown unchanged.
 
 from __future__ import annotations
 
+import html
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -80,6 +81,14 @@ class Language:
 
 
 # --- Times and ages as text ---
+
+
+def plain_tip(text: str) -> str:
+    """Return ``text`` as a tool tip that shows it as it is: Qt reads what looks like HTML in one as HTML.
+
+    Texts of robots and of other operators are among them.
+    """
+    return f"<p>{html.escape(text)}</p>".replace("\n", "<br>") if "<" in text else text
 
 
 def time_of_day(at: float | None, now: float | None = None) -> str:

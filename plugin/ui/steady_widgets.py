@@ -21,6 +21,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from .glyphs import painting
+from .language import plain_tip
 
 NARROWEST = 60
 """Width in pixels that a text requests; it uses what is available."""
@@ -78,7 +79,7 @@ class ScrollingText(QScrollArea):
         self._label.setText(text)
         self.verticalScrollBar().setValue(0)
         if not self._has_own_tip:
-            self._label.setToolTip(text)
+            self._label.setToolTip(plain_tip(text))
 
     def setToolTip(self, tip: str) -> None:
         self._has_own_tip = True
@@ -119,7 +120,7 @@ class ElidedText(QLabel):
 
     def setText(self, text: str) -> None:
         super().setText(text)
-        self.setToolTip(text)
+        self.setToolTip(plain_tip(text))
 
     def sizeHint(self) -> QSize:
         return QSize(NARROWEST, self.fontMetrics().lineSpacing() + AROUND_TEXT)
@@ -226,7 +227,7 @@ class ElidedButton(QToolButton):
         shown = self.fontMetrics().elidedText(self._whole, Qt.TextElideMode.ElideRight, room)
         self.setText(shown)
         is_cut = shown != self._whole
-        self.setToolTip("\n".join([self._whole] * is_cut + [self._tip] * bool(self._tip)))
+        self.setToolTip(plain_tip("\n".join([self._whole] * is_cut + [self._tip] * bool(self._tip))))
 
 
 class _SteadyTabBar(QTabBar):

@@ -14,7 +14,7 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableVi
 
 from ...robot_bridge.core.files import replacement
 from .errors import FleetError
-from .language import short_time, tr
+from .language import plain_tip, short_time, tr
 
 
 class RowModel(QAbstractTableModel):
@@ -58,9 +58,10 @@ class TextModel(RowModel):
         self._cells = cells
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            return self._cells(self.rows[index.row()])[index.column()]
-        return None
+        if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return None
+        text = self._cells(self.rows[index.row()])[index.column()]
+        return text if role == Qt.ItemDataRole.DisplayRole else plain_tip(text)
 
 
 def number_of(value: object) -> int:

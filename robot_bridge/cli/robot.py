@@ -53,7 +53,9 @@ def robot(
         float, typer.Option(help="Largest acceleration, m/s²; it turns in proportion.", min=0.1, max=20)
     ] = 1.5,
     rate: Annotated[float, typer.Option(help="Positions a second.", min=0.1, max=50)] = 5.0,
-    noise: Annotated[float, typer.Option(help="Noise of the reported position, metres.", min=0)] = 0.01,
+    noise: Annotated[
+        float, typer.Option(help="Noise of the reported position, metres.", min=0, max=100)
+    ] = 0.01,
     seed: Annotated[int, typer.Option(help="Seed of the noise.")] = 1,
     see: Annotated[
         list[str] | None, typer.Option(help="X,Y,ID of a thing that it tells of once it is within 10 m.")

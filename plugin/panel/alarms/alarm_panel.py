@@ -24,7 +24,7 @@ from qgis.PyQt.QtWidgets import (
 from ...settings.profile import export_path
 from ...ui.dialogs import file_to_write, push_button
 from ...ui.errors import FleetError
-from ...ui.language import date_and_time, short_time, time_of_day, tr, tr_count
+from ...ui.language import date_and_time, plain_tip, short_time, time_of_day, tr, tr_count
 from ...ui.steady_widgets import ElidedText
 from ...ui.tables import RowModel, TextModel, TimeColumn, ZoomMenu, iso_time, shrink_view, write_csv
 from .board import CHANGES, alarm_state_in_words, colour_of, robots_of
@@ -138,7 +138,7 @@ class AlarmModel(RowModel):
         if role == Qt.ItemDataRole.DisplayRole:
             return (short_time(alarm.began), alarm.text, alarm_state_in_words(alarm))[index.column()]
         if role == Qt.ItemDataRole.ToolTipRole:
-            return tip(alarm)
+            return plain_tip(tip(alarm))
         if role == Qt.ItemDataRole.ForegroundRole:
             return colour_of(alarm)
         if role == Qt.ItemDataRole.FontRole and alarm.is_new:

@@ -22,7 +22,7 @@ from ...gateway_client.robot_states import RemovedRobots, RobotArrays
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, key_of
 from ...layers.site_transform import SiteToCanvas, SiteToMapTransform, transform_points_or_nan
 from ...ui.errors import FleetError, MapTransformError
-from ...ui.language import first_of, tr, tr_count
+from ...ui.language import first_of, plain_tip, tr, tr_count
 from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps, UpdateScheduler
 from . import rules
 from .board import AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
@@ -429,7 +429,7 @@ class AlarmBar(QObject):
         if new and (text, tip) != self._shown:
             self._shown = text, tip
             self._label.show_text(text)
-            self._label.setToolTip(tip)
+            self._label.setToolTip(plain_tip(tip))
 
     def _bring_to_front(self, level: Qgis.MessageLevel) -> None:
         """Show the item with this level, in front; it is replaced only when behind another notice, since
