@@ -133,12 +133,13 @@ class FleetPlugin:
         from .planning.plan_dock import PlansAction
         from .replay.replay_dock import ReplayAction
         from .tour.tour_panel import TourAction
-        from .ui.actions import MenuLetters, PluginMenu, Shortcuts, emergency_keys_in, keys_in
+        from .ui.actions import FailedStart, MenuLetters, PluginMenu, Shortcuts, emergency_keys_in, keys_in
 
         main = iface.mainWindow()
         # Before it contains the plugin's own widgets, which are thousands.
         taken = keys_in(main)
         # The first ones, so that they are removed last: everything else has left menu and project by then.
+        start = self._add(FailedStart(main, iface.mapCanvas()))
         self._add(PluginMenu(main, MENU))
         self._add(LiveLayers(project))
         window = self._window = self._add(FleetWindow(iface))
@@ -171,6 +172,7 @@ class FleetPlugin:
             self._add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
         for text in emergency_keys_in(taken):
             notices.warning(text)
+        start.finish()
 
     def _add(self, part: Any):
         self._parts.append(part)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from qgis.core import QgsSettings
-from qgis.gui import QgisInterface, QgsDockWidget, QgsGui
+from qgis.gui import QgisInterface, QgsDockWidget, QgsGui, QgsMapCanvas
 from qgis.PyQt.QtCore import QByteArray, QObject, Qt
 from qgis.PyQt.QtGui import QIcon, QKeySequence
 from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow, QMenu, QShortcut, QWidget
@@ -362,6 +362,36 @@ class DockAction:
         self.dock.deleteLater()
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()
+
+
+class FailedStart:
+    """Restores QGIS's window and its map where the plugin's start fails half-way.
+
+    A part that fails in its constructor is known to nobody, and what it has added already has a parent.
+    """
+
+    def __init__(self, window: QMainWindow, canvas: QgsMapCanvas):
+        self._window, self._canvas = window, canvas
+        self._before = (*window.children(), *canvas.children(), *canvas.scene().items())
+        self._is_over = False
+
+    def finish(self) -> None:
+        """Note that every part was built, and is removed by itself."""
+        self._is_over, self._before = True, ()
+
+    def remove(self) -> None:
+        """Remove everything that was added, unless every part was built."""
+        if self._is_over:
+            return
+        scene = self._canvas.scene()
+        for item in scene.items():
+            if item not in self._before:
+                scene.removeItem(item)
+        for child in (*self._window.children(), *self._canvas.children()):
+            if child not in self._before:
+                if isinstance(child, QDockWidget):
+                    self._window.removeDockWidget(child)
+                child.deleteLater()
 
 
 class PluginMenu:
