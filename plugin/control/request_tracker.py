@@ -436,13 +436,17 @@ class RequestTracker(QObject):
         draft: PendingCommand | None = None,
         more: tuple[Topic, ...] = (),
     ) -> str:
-        topics = topics_of(order.method, order.params) + more
-        self.retried.emit(topics[0])
-        self._forget_failure(topics[0])
+        refusal = None
+        # First, so that no fault in what is shown of it keeps back a stop.
         try:
             self._sender.submit(order)
         except NotSentError as error:
-            raise NotSentError(_not_sent(words, error), topics) from error
+            refusal = error
+        topics = topics_of(order.method, order.params) + more
+        self.retried.emit(topics[0])
+        self._forget_failure(topics[0])
+        if refusal is not None:
+            raise NotSentError(_not_sent(words, refusal), topics) from refusal
         self._pending[order.key] = PendingRequest(
             words,
             order.requested_at,
