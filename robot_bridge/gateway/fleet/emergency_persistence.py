@@ -406,9 +406,7 @@ class StopWriter:
 
         :raises StoreError: when the database cannot be used; the stop must then be written again.
         """
-        issuing = start_task(
-            self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
-        )
+        issuing = start_task(self._issue(stop, robots, _write_stop))
         await asyncio.wait({issuing}, timeout=BARE_AFTER_S)
         early = [] if issuing.done() else await self.add_bare(stop, readers)
         try:
@@ -442,7 +440,8 @@ class StopWriter:
         for robot, stop in self._owed.items():
             by_stop.setdefault(stop, []).append(robot)
         for stop, robots in by_stop.items():
-            failed = await self._halve(sorted(robots), partial(self._issue, stop), self._database.run)
+            write = partial(self._issue, stop, also=_withdraw_motions)
+            failed = await self._halve(sorted(robots), write, self._database.run)
             for robot in robots:
                 error = failed.get(robot)
                 if error is None or await self._is_settled(stop, robot, error):
@@ -460,8 +459,13 @@ class StopWriter:
         log.error("robot %r is sent an Abort that no command follows: look whether it stands", robot)
         return True
 
-    async def _issue(self, stop: StopRow, robots: Sequence[str]) -> None:
-        await self._commands.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
+    async def _issue(
+        self,
+        stop: StopRow,
+        robots: Sequence[str],
+        also: Callable[[StopRow, Sequence[str], Connection], None],
+    ) -> None:
+        await self._commands.issue(orders_of(stop, robots), partial(also, stop, robots))
 
     async def add_bare(self, stop: StopRow, robots: Sequence[str]) -> list[str]:
         """Send a bare Abort to those of ``robots`` that were sent none of this stop, and return them.
@@ -568,10 +572,10 @@ def _write_stop(stop: StopRow, robots: Sequence[str], connection: Connection) ->
         requests.remove_everywhere(connection, MOTION_OPS)
     else:
         # Another gateway stored it, and may have cleared it by now: its robots may be sent on.
-        _withdraw_motions(robots, connection)
+        _withdraw_motions(stop, robots, connection)
 
 
-def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:
+def _withdraw_motions(_stop: StopRow, robots: Sequence[str], connection: Connection) -> None:
     requests.remove_kinds(connection, robots, MOTION_OPS)
 
 

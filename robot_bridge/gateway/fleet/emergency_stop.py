@@ -454,8 +454,7 @@ class EmergencyStops:
     async def _store(self) -> None:
         while self._unstored:
             stop = self._unstored[0]
-            robots = self._robots.commanded()
-            readers = [robot for robot in robots if self._robots.get(robot).link == "sql"]
+            robots, readers = self._robots.commanded(), self._robots.readers()
             try:
                 if not await self._writer.write(stop, robots, readers):
                     self._unlisted.append(stop)

@@ -159,6 +159,11 @@ class Robots:
         """Return the names of the robots of this gateway that are not only seen, sorted."""
         return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
 
+    def readers(self) -> list[str]:
+        """Return the names of those of them that hear nothing but rows of the database, sorted."""
+        own = self._robots.items()
+        return sorted(name for name, robot in own if robot.link == "sql" and robot.abilities != "")
+
     def commanded_elsewhere(self) -> list[str]:
         """Return the names of the robots of other gateways that are not only seen, sorted."""
         return sorted(set(self._other_columns.names()).difference(self._other_columns.only_seen()))

@@ -16,9 +16,11 @@ from robot_bridge.core.messages.robots import OpAck, SendPos
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.api import robot_sql
 from robot_bridge.gateway.commands import service as book_module
+from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.persistence import write_late
-from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.fleet import emergency_persistence, emergency_stop
 from robot_bridge.gateway.model.events import CommandChanged
+from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.repositories import emergency_stops, requests
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories import robots as stored_robots
@@ -432,6 +434,25 @@ async def test_robots_are_told_whatever_else_goes_wrong(driven, caplog):
     failed = [record.getMessage().partition(" failed;")[0] for record in caplog.records]
     assert "noting an emergency stop" in failed
     assert "sending an emergency stop over open connections" in failed
+
+
+@ON_ONE
+@pytest.mark.parametrize(
+    ("owner", "name"), [(emergency_persistence, "abort_id"), (Robots, "get"), (CommandOrder, "__init__")]
+)
+async def test_a_robot_of_which_no_abort_can_be_made_keeps_it_from_no_other(driven, monkeypatch, owner, name):
+    real = getattr(owner, name)
+
+    def fail_for_one(*arguments):
+        if "r1" in arguments:
+            raise ZeroDivisionError("unforeseen")
+        return real(*arguments)
+
+    monkeypatch.setattr(owner, name, fail_for_one)
+    await stop(driven)
+    # A bare one comes first, and may be followed by that of the command.
+    assert set(outbox(driven)) == set(outbox(driven, "r1")) == {"Abort"}
+    assert (await ops_of(driven, "r2"))[0] == "Abort"
 
 
 @ON_ONE
