@@ -8,6 +8,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
+from types import NoneType
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection
@@ -22,7 +23,7 @@ from ...core.errors import (
     unstored_abort,
     with_abort_sent,
 )
-from ...core.logs import log_and_continue
+from ...core.logs import log_and_continue, log_unforeseen
 from ...core.messages.base import MessageError, check_crs, to_json
 from ...core.messages.commands import (
     AbortAll,
@@ -140,7 +141,12 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-        return await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
+
+        async def issue() -> list[CommandReport]:
+            # Within the task: what nobody foresaw of one robot must keep the Abort from no other.
+            return await self._commands.issue(orders)
+
+        return await self.send_if_unstored(orders, start_task(issue()))
 
     async def send_if_unstored(
         self, orders: list[CommandOrder], storing: asyncio.Task[T], *, is_pause: bool = False
@@ -149,27 +155,18 @@ class CommandRequests:
 
         An Abort is noted before it is sent, a pause becomes one when it has failed.
 
-        :raises StoreError, RefusedError, MessageError: with the robots that an Abort was sent to; else as
-            ``storing``.
+        :raises StoreError, RefusedError, MessageError: with the robots that an Abort was sent to. Errors of
+            ``storing`` that nobody foresaw are logged, and raised as StoreError.
         """
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
-        if not storing.done() or isinstance(storing.exception(), StoreError):
+        if not storing.done() or not isinstance(storing.exception(), (NoneType, RefusedError, MessageError)):
             noting = None if is_pause else self._commands.keep_aborts(orders)
             sent = [order.robot for order in orders if self._send_unstored(order)]
             sent += await self._write_unstored(orders, storing)
             await _wait_for_note(noting)
         try:
             result = await storing
-        except StoreError as error:
-            is_refused = isinstance(error, DataRefusedError)
-            if is_refused:
-                self._commands.release_aborts(orders)
-            elif is_pause:
-                await _wait_for_note(self._commands.keep_aborts(orders))
-            what = _sent_in_words(sent, is_pause=is_pause, is_lasting=not is_refused)
-            kind = UncertainError if is_pause and isinstance(error, UncertainError) else StoreError
-            raise kind(f"{error}. {what}") from error
         except (RefusedError, MessageError) as error:
             self._commands.release_aborts(orders)
             if not sent:
@@ -177,6 +174,16 @@ class CommandRequests:
             log.warning("%s: sent an Abort for what was refused then", listed_names(sent))
             refused = MessageError if isinstance(error, MessageError) else RefusedError
             raise refused(with_abort_sent(error, sent)) from error
+        except Exception as error:
+            text = error if isinstance(error, StoreError) else log_unforeseen(log, "storing an Abort")
+            is_refused = isinstance(error, DataRefusedError)
+            if is_refused:
+                self._commands.release_aborts(orders)
+            elif is_pause:
+                await _wait_for_note(self._commands.keep_aborts(orders))
+            what = _sent_in_words(sent, is_pause=is_pause, is_lasting=not is_refused)
+            kind = UncertainError if is_pause and isinstance(error, UncertainError) else StoreError
+            raise kind(f"{text}. {what}") from error
         self._commands.release_aborts(orders)
         return result
 

@@ -9,10 +9,12 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.commands import AbortAll, AbortTask
 from robot_bridge.core.messages.queues import QueueTask, SetQueue
 from robot_bridge.core.messages.robots import SetObject
 from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.validation import CommandValidator, StopTimes
 from robot_bridge.gateway.fleet import robot_outboxes
 from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
 from tests.support.patience import until
@@ -112,6 +114,28 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
     await roads.fleet.watch_roads()
     assert sent_on == ["r2", "r2"]
     assert caplog.text.count(said) == 1
+
+
+@pytest.mark.parametrize(
+    ("owner", "name"),
+    [(CommandValidator, "draft"), (StopTimes, "check"), (CommandOrder, "is_stop")],
+)
+async def test_an_abort_of_all_comes_to_the_others_whatever_is_wrong_with_one(two, monkeypatch, owner, name):
+    call, real = [], getattr(owner, name)
+
+    def fail_for_one(*arguments):
+        if any(getattr(one, "robot", None) == "r1" for one in arguments):
+            raise KeyError("nobody foresaw this")
+        return real.fget(*arguments) if isinstance(real, property) else real(*arguments)
+
+    monkeypatch.setattr(owner, name, property(fail_for_one) if isinstance(real, property) else fail_for_one)
+    two.fleet.orders.reach(lambda robot, _id: call.append(robot) or True)
+    with pytest.raises(StoreError, match=r"internal error .* it was sent to r1, r2 all"):
+        await two.fleet.orders.abort_all(AbortAll(), "Ada")
+    assert call == ["r1", "r2"]
+    # As it is done every second.
+    await two.fleet.orders._commands.save_progress()
+    assert two.waiting("r2") == ["Abort"]
 
 
 async def test_a_map_that_cannot_be_stored_for_long_fills_no_log(two, monkeypatch, caplog):
