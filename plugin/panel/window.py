@@ -196,7 +196,9 @@ class FleetWindow(QObject):
         """Close the plugin's dialogs without doing what they ask about: nobody would carry it out."""
         for dialog in self._iface.mainWindow().findChildren(QDialog):
             if dialog.objectName().startswith(OURS):
-                dialog.reject()
+                if not dialog.isHidden():
+                    # One that was closed before would signal its end a second time.
+                    dialog.reject()
                 dialog.deleteLater()
 
     def _remove_tool(self, action: QAction) -> None:

@@ -92,7 +92,13 @@ def test_no_dialog_outlives_the_plugin(iface, gateway, make_robot, wait):
     window.dock.findChild(QPushButton, "fleet_alarm_limits").click()
     opened = [one for one in iface.findChildren(QDialog) if one.isVisible()]
     assert len(opened) == 6
+    ended = []
+    for dialog in opened:
+        dialog.finished.connect(lambda _, dialog=dialog: ended.append(dialog))
+    # It has ended, and is deleted later.
+    opened[0].reject()
     plugin.unload()
+    assert len(ended) == len(opened) and all(one in ended for one in opened)
     assert [one.objectName() for one in opened if one.isVisible()] == []
     QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     assert iface.findChildren(QDialog) == []
