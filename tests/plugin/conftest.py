@@ -55,6 +55,20 @@ def nothing_outlives_qgis(qgis_app):
     gc.collect()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_stall_counts_as_sleep():
+    """Have no desk refuse requests, or renew its link, because a busy machine stood still for seconds.
+
+    Tests of that let hours pass.
+    """
+    from fleet_supervisor.plugin.gateway_client import connection, fleet_state
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(fleet_state, "STANDSTILL_S", START)
+        patched.setattr(connection, "ASLEEP_AFTER", START)
+        yield
+
+
 @pytest.fixture
 def site() -> SiteReport:
     return SiteReport(
