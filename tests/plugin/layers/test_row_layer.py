@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from itertools import groupby
 
@@ -18,6 +19,8 @@ from fleet_supervisor.plugin.ui import scheduling
 from qgis.core import QgsExpression, QgsExpressionContext, QgsExpressionContextUtils, QgsProject
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
+
+from tests.support.patience import START
 
 E, N = 488000.0, 5190000.0
 TWO = [([(1.0, 2.0)], ["a", 1]), ([(3.0, 4.0)], ["b", None])]
@@ -182,21 +185,24 @@ def test_many_are_written_bit_by_bit_after_the_news_and_painted_once(
     assert told[:5] == [AT_ONCE, "events", 2 * AT_ONCE, "events", len(rows)] and painted == [len(rows)]
 
 
-def half_written(points, site, wait):
-    """Let rows be written, and stop where some are and others not."""
+def half_written(points, site):
+    """Let rows be written, and stop where some are and others not: a wait may let all of them be."""
     points.show([([(float(k), 0.0)], [f"old{k}", k]) for k in range(20 * AT_ONCE)], site)
-    wait(lambda: points.layer is not None and points.layer.featureCount())
+    until = time.monotonic() + START
+    while points.layer is None or not points.layer.featureCount():
+        assert time.monotonic() < until
+        QApplication.processEvents()
     assert points.layer.featureCount() < 20 * AT_ONCE
 
 
-def test_what_comes_while_it_is_written_is_what_is_shown_in_the_end(points, site, wait, one_step):
-    half_written(points, site, wait)
+def test_what_comes_while_it_is_written_is_what_is_shown_in_the_end(points, site, one_step):
+    half_written(points, site)
     show(points, TWO, site)
     assert set(features(points)) == {"a", "b"}
 
 
-def test_taken_out_while_it_is_written_it_comes_back_whole(points, project, site, wait, one_step):
-    half_written(points, site, wait)
+def test_taken_out_while_it_is_written_it_comes_back_whole(points, project, site, one_step):
+    half_written(points, site)
     project.removeMapLayer(points.layer.id())
     points.finish()
     assert points.layer.featureCount() == 20 * AT_ONCE

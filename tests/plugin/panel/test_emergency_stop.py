@@ -316,7 +316,7 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     wait(lambda: "in force" in banner(at_desk), 10)
     assert len(gateway.requests_of("emergency_stop")) == 1
     over = ("NOT sent yet", "The link to the gateway", "Nothing listens")
-    assert [text for text in iface.texts() if any(part in text for part in over)] == []
+    wait(lambda: not any(part in text for text in iface.texts() for part in over), what="the end of those")
 
 
 def test_nothing_says_that_a_stop_is_in_force_once_another_desk_has_cleared_it(stopped, gateway, wait):

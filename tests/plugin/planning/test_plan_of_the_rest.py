@@ -182,7 +182,7 @@ def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
     why = "what is left could not be planned: it took too long"
     plans.tell(by="gateway", reason=why, state="paused")
     wait(lambda: hung(iface, f"The cone plan is paused: {why}."), 5)
-    assert not hung(iface, "No new cone plan was sent by itself")
+    wait(lambda: not hung(iface, "No new cone plan was sent by itself"), 5, "the end of what is over")
     press(panel, "fleet_plan_resume")
     wait(lambda: not hung(iface, "could not be planned"), 5, "the end of what is over")
 

@@ -175,7 +175,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     begun = loaded.clockwork.since
     for k in range(4):
         path = {"points": [[10.0, 20.0 * k], [90.0, 20.0 * k]]}
-        steps = [{"state": "queued", "at": begun, "by": "anna"}]
+        steps = [{"state": "queued", "at": begun + 6.0, "by": "anna"}]
         known = {"command": f"p{k}", "robot": f"w{k}", "op": "SetPath", "params": path, "operator": "anna"}
         gateway.tell("command", {**known, "state": "queued", "steps": steps})
     wait(lambda: "p3" in at_desk.desk.state.commands and not loaded.is_busy, what="the commands")
