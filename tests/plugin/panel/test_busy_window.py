@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from itertools import pairwise
 
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QTimer
@@ -14,12 +13,29 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.fleet_panel import press
 
 
+class Beat(threading.Thread):
+    """Counts 20 ms each, as long as this process is given its time."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.count, self._ended = 0, threading.Event()
+
+    def run(self):
+        while not self._ended.wait(0.02):
+            self.count += 1
+
+    def end(self):
+        self._ended.set()
+        self.join()
+
+
 def test_the_window_goes_on_while_a_gateway_hangs(at_desk, gateway, wait):
     release = threading.Event()
     gateway._loop.call_soon_threadsafe(release.wait)
-    ticks = []
+    beat, ticks = Beat(), []
     timer = QTimer()
-    timer.timeout.connect(lambda: ticks.append(time.monotonic()))
+    timer.timeout.connect(lambda: ticks.append(beat.count))
+    beat.start()
     timer.start(20)
     at_desk.desk.selection.select("r1")
     at_desk.actions.abort.trigger()
@@ -29,9 +45,9 @@ def test_the_window_goes_on_while_a_gateway_hangs(at_desk, gateway, wait):
     QTest.qWait(4000)
     timer.stop()
     release.set()
-    # Nothing waited for the gateway, which hung all the time.
-    gaps = [b - a for a, b in pairwise(ticks)]
-    assert max(gaps) < 1.5
+    beat.end()
+    # Nothing waited for the gateway, which hung all the time: 1.5 s, in which another thread went on.
+    assert max(b - a for a, b in pairwise(ticks)) < 75
 
 
 def newest_in(buffer):
