@@ -6,8 +6,10 @@ import asyncio
 import gc
 import itertools
 import json
+import sys
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import replace
@@ -67,6 +69,23 @@ def no_stall_counts_as_sleep():
         patched.setattr(fleet_state, "STANDSTILL_S", START)
         patched.setattr(connection, "ASLEEP_AFTER", START)
         yield
+
+
+@pytest.fixture(autouse=True)
+def nothing_raised_unseen():
+    """Have a test fail where a slot raises: PyQt ends the program, or QGIS's hook hides it.
+
+    Which of the two depends on whether an earlier test has imported ``qgis.utils``.
+    """
+    raised, before = [], sys.excepthook
+
+    def note(kind, error, trace):
+        raised.append("".join(traceback.format_exception(kind, error, trace)))
+
+    sys.excepthook = note
+    yield
+    sys.excepthook = before
+    assert not raised, "\n".join(raised)
 
 
 @pytest.fixture
