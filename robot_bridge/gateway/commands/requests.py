@@ -204,12 +204,9 @@ class CommandRequests:
             if not (storing.done() and not storing.cancelled() and storing.exception() is None):
                 persistence.write_bare_aborts(connection, robots, withdrawn, emergency=False)
 
-        readers = [
-            order
-            for order in orders
-            # Some may have been removed meanwhile, or are another gateway's.
-            if order.robot in self._robots and self._robots.get(order.robot).link == "sql"
-        ]
+        # Some may have been removed meanwhile, or are another gateway's.
+        on_sql = set(self._robots.readers())
+        readers = [order for order in orders if order.robot in on_sql]
         done: list[str] = []
         for withdrawn in ((), ORDERS):
             # One that aborts a single command withdraws no other.
@@ -221,6 +218,9 @@ class CommandRequests:
                     done += robots
             except StoreError as error:
                 log.error("Aborts of %s cannot be written: %s", listed_names(robots), error)
+            except Exception:
+                # Kept, they are stored one by one.
+                log.exception("Aborts of %s cannot be written", listed_names(robots))
         return done
 
     async def _issued_before(

@@ -17,6 +17,8 @@ from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.validation import CommandValidator, StopTimes
 from robot_bridge.gateway.fleet import robot_outboxes
 from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
+from robot_bridge.gateway.model.robots import Robots
+from robot_bridge.gateway.storage.repositories import requests
 from tests.support.patience import until
 
 
@@ -118,21 +120,30 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
 
 @pytest.mark.parametrize(
     ("owner", "name"),
-    [(CommandValidator, "draft"), (StopTimes, "check"), (CommandOrder, "is_stop")],
+    [
+        (CommandValidator, "draft"),
+        (StopTimes, "check"),
+        (CommandOrder, "is_stop"),
+        (requests, "_named"),
+    ],
 )
 async def test_an_abort_of_all_comes_to_the_others_whatever_is_wrong_with_one(two, monkeypatch, owner, name):
+    await two.ready("r3", link="sql")
     call, real = [], getattr(owner, name)
 
     def fail_for_one(*arguments):
-        if any(getattr(one, "robot", None) == "r1" for one in arguments):
+        if any("r1" in (one, getattr(one, "robot", None)) for one in arguments):
             raise KeyError("nobody foresaw this")
         return real.fget(*arguments) if isinstance(real, property) else real(*arguments)
 
     monkeypatch.setattr(owner, name, property(fail_for_one) if isinstance(real, property) else fail_for_one)
+    find = Robots.get
+    monkeypatch.setattr(Robots, "get", lambda robots, robot: find(robots, {"r1": "nobody"}.get(robot, robot)))
     two.fleet.orders.reach(lambda robot, _id: call.append(robot) or True)
-    with pytest.raises(StoreError, match=r"internal error .* it was sent to r1, r2 all"):
+    with pytest.raises(StoreError, match=r"internal error .* it was sent to r1, r2"):
         await two.fleet.orders.abort_all(AbortAll(), "Ada")
-    assert call == ["r1", "r2"]
+    assert call[:2] == ["r1", "r2"]
+    assert ("Abort",) in two.sql("select op from sa where robot = ?", "r3")
     # As it is done every second.
     await two.fleet.orders._commands.save_progress()
     assert two.waiting("r2") == ["Abort"]
