@@ -14,10 +14,11 @@ from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 from websockets.protocol import State
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth import client_connection
 from robot_bridge.gateway.auth.accounts import TokenKind
-from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
+from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity, RateLimit
 from robot_bridge.protocol import jsonrpc
 from tests.support.patience import BUSY, until
 
@@ -122,6 +123,8 @@ async def test_answers_beyond_the_limit_of_messages_come_and_too_many_of_them_en
     host, monkeypatch
 ):
     monkeypatch.setattr(OpenDoor, "limits", LimitSettings(robot_messages_per_s=1.0, robot_burst=5))
+    # Time stands: a machine that stands still for a second allows no further message.
+    monkeypatch.setattr(client_connection, "RateLimit", partial(RateLimit, clock=ManualClock()))
     answer = json.dumps({"jsonrpc": "2.0", "id": 7, "result": {}})
     async with connected(host, None, None) as client:
         for number in range(8):
