@@ -113,6 +113,8 @@ def test_a_robot_stands_whose_pause_cannot_be_stored_and_its_queue_waits_afterwa
         lambda: next((q for q in desk.ask("get_queue")["queues"] if q["state"] == "paused"), None)
     )
     assert [task["task"] for task in queue["tasks"]] == ["task-0001", "task-0002"]
+    # By its answer what was sent before has come.
+    robot.ask("Alive")
     assert [call for call in robot.calls if call["method"] in MOTIONS] == []
 
 
@@ -231,4 +233,6 @@ def test_a_robot_that_restarts_hears_an_abort_while_robots_are_locked(served):
     robot.calls.clear()
     robot.plug_in(2)
     desk.wait_for_step("target-it-1", "aborted")
+    # By its answer what was sent before has come.
+    robot.ask("Alive")
     assert [call for call in robot.calls if call["method"] in MOTIONS] == []

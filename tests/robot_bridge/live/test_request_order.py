@@ -153,6 +153,8 @@ def test_a_stop_is_first_when_an_order_before_it_waits_for_the_database(bridge, 
     else:
         desk.wait_for_step(begun, "aborted")
     assert late not in desk.commands
+    # By its answer what was sent before has come.
+    robot.ask("Alive")
     assert [call["method"] for call in robot.calls if call["method"] == "SetPosEnd"] == []
 
 
@@ -220,6 +222,7 @@ def test_what_lay_in_a_buffer_beyond_its_deadline_is_not_done_unless_it_stops_ro
     assert desk.answers[1]["error"]["data"]["now"] > deadline
     assert "error" not in desk.answers[2] and "error" not in desk.answers[3]
     assert late not in desk.commands
+    other.ask("Alive")
     assert [call["method"] for call in other.calls if call["method"] == "SetPosEnd"] == []
     other.connection.close()
 

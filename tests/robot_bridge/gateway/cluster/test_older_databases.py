@@ -95,7 +95,8 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
         # What was cleared here stays so, though it is in force there.
         assert not desk_at(first).emergency["in_force"]
         if is_noticed:
-            robot.tell("Stopped")
+            # By its answer what was sent before has come.
+            robot.ask("Stopped")
             assert not [call for call in robot.calls if call["method"] == "Abort"]
             assert "copy" not in first.output()
         # What it was told to be it is from then on.

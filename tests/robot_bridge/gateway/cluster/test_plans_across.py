@@ -222,6 +222,9 @@ def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name, wires, speak
     ada.ask("clear_plan", {"plan": name})
     for desk in (ben, cleo):
         desk.until(lambda desk=desk: is_in(desk, name, "cleared"))
+    for wire in robots.values():
+        # By its answer what was sent before has come.
+        wire.ask("Alive")
     assert not [call for wire in robots.values() for call in wire.calls if call["method"] == "SetPath"]
 
 
