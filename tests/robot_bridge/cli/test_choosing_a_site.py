@@ -92,7 +92,8 @@ def test_a_choice_outlives_the_gateway_until_the_given_site_is_asked_for(bridge)
     assert bridge.sql("select value from bridge where name = 'site'") == [("south",)]
     restart(bridge)
     assert bridge.desk().site["id"] == "south"
-    assert "site south is served, which a supervisor chose, and not north" in bridge.output()
+    said = "site south is served, which a supervisor chose, and not north"
+    wait_until(lambda: said in bridge.output())
     restart(bridge, "--site-as-given")
     assert bridge.desk().site["id"] == "sample"
     restart(bridge)

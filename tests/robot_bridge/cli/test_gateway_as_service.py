@@ -170,7 +170,7 @@ def test_settings_are_taken_over_without_a_new_publication(bridge, site):
 def test_a_publication_that_is_wrong_is_not_taken_over(bridge, site):
     change(site, "stale_after_s = 3.0", "stale_after_s = -3.0")
     wait_until(lambda: "stale_after_s = -3.0 is not above 0" in bridge.output())
-    assert "version 1 is served on" in bridge.output()
+    wait_until(lambda: "version 1 is served on" in bridge.output())
     change(site, "stale_after_s = -3.0", "stale_after_s = 2.0")
     desk = bridge.desk()
     wait_until(lambda: desk.ask("hello", {"operator": "Ada"})["site"]["stale_after"] == 2.0)
@@ -273,6 +273,8 @@ def test_the_log_is_json_on_request_and_the_event_loop_can_be_chosen(
     options = ["--log-format", "json", "--log-level", "info", "--loop", loop]
     where = ["--site", site, "--port", "0", "--database", f"sqlite:///{tmp_path}/fleet.db"]
     start_program(["serve", *where, *options], r"listening on (ws://\S+)")
+    # All of its log is written when it has ended.
+    start_program.processes.end("program")
     text = start_program.processes.log("program").read_text()
     entries = [json.loads(line) for line in text.splitlines() if not line.startswith("listening")]
     assert all({"time", "level", "logger", "message"} <= entry.keys() for entry in entries)

@@ -104,7 +104,7 @@ def test_a_gateway_serves_it_follows_it_and_goes_on_without_the_database(
         assert bridge.gateway.wait(START) == 0
         bridge.start_gateway()
         assert version_served(bridge) == 2
-        assert "its version 2, which was fetched before, is served" in bridge.output()
+        wait_until(lambda: "its version 2, which was fetched before, is served" in bridge.output())
     finally:
         postgresql_server.start()
     publish_again(site)

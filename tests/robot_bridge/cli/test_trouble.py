@@ -65,7 +65,7 @@ def test_a_clock_that_goes_against_what_is_stored_is_told_when_the_gateway_start
         assert said not in bridge.output()
         shift_times(bridge, shift)
         bridge.start_gateway()
-        assert said in bridge.output()
+        wait_until(lambda said=said: said in bridge.output())
         bridge.kill_gateway()
         shift_times(bridge, -shift)
     assert bridge.sql("select x from trajectories") == [(7.0,)]

@@ -208,7 +208,7 @@ def test_a_robot_that_drives_on_after_it_stood_does_not_count_as_standing(bridge
     where(robot, 1.5, 2.0)
     desk.until(lambda: desk.emergency["moving"] == ["r1"])
     assert (desk.emergency["acknowledged"], desk.emergency["standing"]) == (1, 0)
-    assert "r1: moves although it was seen to stand after a stop" in bridge.output()
+    wait_until(lambda: "r1: moves although it was seen to stand after a stop" in bridge.output())
     where(robot, 2.0)
     desk.until(lambda: desk.emergency["moving"] == [] and desk.emergency["standing"] == 1)
 

@@ -269,9 +269,11 @@ def test_an_abort_stops_a_robot_though_the_database_was_put_back_to_an_older_sta
     older.put_back()
     bridge.start_gateway()
 
-    assert OLDER in bridge.output()
+    wait_until(lambda: OLDER in bridge.output())
     abort_there(watch(bridge), robot)
     # It is the same database for the next gateway.
     bridge.kill_gateway()
     bridge.start_gateway()
+    # All of its log is written when it has ended.
+    bridge.end()
     assert bridge.output().count(OLDER) == 1

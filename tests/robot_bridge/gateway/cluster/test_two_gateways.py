@@ -361,7 +361,7 @@ def test_a_gateway_that_stood_still_commands_nobody(pair, name):
     assert robot.hear("SetPosEnd")["x"] == 24.0
     assert close_code(old) == 1012
     assert not [call for call in old.calls if call["method"] == "SetPosEnd"]
-    assert f"robot {name} has connected to gateway b" in pair.a.output()
+    wait_until(lambda: f"robot {name} has connected to gateway b" in pair.a.output())
 
 
 def test_a_gateway_that_stands_still_is_named_and_stops_its_robots_when_it_wakes(pair, name):
