@@ -173,6 +173,8 @@ def test_an_abort_overtakes_only_what_concerns_its_robot(bridge, desk, robot):
     desk.order(1, 3, 4)
     assert desk.answers[3]["result"]["command"] == kept
     robot.say(robot.wait_for("Abort")["id"])
+    # Of one that was not seen for some seconds the task ends with its next position.
+    robot.tell("SendPos", {"x": 20.0, "y": 20.0, "theta": 0.0, "v": 0.0})
     assert desk.wait_for_step(robot.task, "aborted")
     other.connection.close()
 
@@ -216,6 +218,8 @@ def test_what_lay_in_a_buffer_beyond_its_deadline_is_not_done_unless_it_stops_ro
     finally:
         bridge.gateway.send_signal(signal.SIGCONT)
     robot.say(robot.wait_for("Abort")["id"])
+    # Of one that was not seen for some seconds the task ends with its next position.
+    robot.tell("SendPos", {"x": 20.0, "y": 20.0, "theta": 0.0, "v": 0.0})
     assert desk.wait_for_step(robot.task, "aborted")
     desk.order(1, 2, 3)
     assert "after its deadline, so that it was not done: a robot shall not drive off" in desk.refusal(1)

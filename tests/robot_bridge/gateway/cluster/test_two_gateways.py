@@ -425,6 +425,8 @@ def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
     pair.a.kill_gateway()
     robot = pair.robot(pair.b, name)
     assert robot.hear("Abort")["emergency"]
+    # Of one that was not seen for some seconds the task ends with its next position.
+    robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
     desk.wait_for_step(f"c-{name}", "aborted")
     # It takes on its next target.
     desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
@@ -453,6 +455,8 @@ def check_aborted_first(pair, name):
     abort = robot.wait_for("Abort", 30.0)
     assert [call for call in robot.calls if call["method"] == "SetPosEnd"] == []
     robot.say(abort["id"])
+    # Of one that was not seen for some seconds the task ends with its next position.
+    robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
     desk.wait_for_step(f"c-{name}", "aborted")
     assert desk.wait_for_step(f"abort-{name}", "acknowledged")["operator"] == "Ada"
     # It takes on its next target.
