@@ -342,7 +342,7 @@ function newsOf({ everything, removed, untracked, view }) {
 
 const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities", "doubt"]);
 
-/** Read positions that came as a table of numbers behind a JSON head (docs/integrator.md, "The desk"). */
+/** Read positions that came as a table of numbers behind a JSON head (docs/desk-protocol.md). */
 export function tableOf(buffer) {
   const begin = 4 + new DataView(buffer).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, begin - 4))).params;
