@@ -443,19 +443,20 @@ class RequestTracker(QObject):
         except NotSentError as error:
             refusal = error
         topics = topics_of(order.method, order.params) + more
+        if refusal is None:
+            self._pending[order.key] = PendingRequest(
+                words,
+                order.requested_at,
+                order.params.get("robot", ""),
+                draft,
+                is_voidable=moves_robots(order),
+                topics=topics,
+                group=self._group,
+            )
         self.retried.emit(topics[0])
         self._forget_failure(topics[0])
         if refusal is not None:
             raise NotSentError(_not_sent(words, refusal), topics) from refusal
-        self._pending[order.key] = PendingRequest(
-            words,
-            order.requested_at,
-            order.params.get("robot", ""),
-            draft,
-            is_voidable=moves_robots(order),
-            topics=topics,
-            group=self._group,
-        )
         return order.key
 
     def _forget_failure(self, topic: Topic) -> None:

@@ -368,6 +368,7 @@ class FailedStart:
     """Restores QGIS's window and its map where the plugin's start fails half-way.
 
     A part that fails in its constructor is known to nobody, and what it has added already has a parent.
+    Connections that it has made are not undone.
     """
 
     def __init__(self, window: QMainWindow, canvas: QgsMapCanvas):

@@ -88,7 +88,10 @@ def plain_tip(text: str) -> str:
 
     Texts of robots and of other operators are among them.
     """
-    return f"<p>{html.escape(text)}</p>".replace("\n", "<br>") if "<" in text else text
+    if "<" not in text and "&lt;" not in text:
+        return text
+    escaped = html.escape(text).replace("\n", "<br>")
+    return f'<p style="white-space: pre-wrap">{escaped}</p>'
 
 
 def time_of_day(at: float | None, now: float | None = None) -> str:
