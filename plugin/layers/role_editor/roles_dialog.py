@@ -66,6 +66,8 @@ class LivePreview(QObject):
     _left = threading.Event()
     """Set unless a thread is in the task ended last, of this dialog or an earlier one."""
     _left.set()
+    _leaving: PreviewTask | None = None
+    """The task ended last: without Python's part of it QGIS may not run it to its end."""
 
     def __init__(self, project: QgsProject, rows: Sequence[role_table.RoleRow], parent: QObject):
         super().__init__(parent)
@@ -106,7 +108,7 @@ class LivePreview(QObject):
         task.measured.disconnect(self._keep)
         task.drawn.disconnect(self.drawn)
         if task.status() == QgsTask.TaskStatus.Running:
-            type(self)._left = task.left
+            type(self)._left, type(self)._leaving = task.left, task
         task.cancel()
 
     def wait_for_end(self) -> None:
