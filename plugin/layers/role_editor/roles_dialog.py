@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -63,11 +62,11 @@ class LivePreview(QObject):
     measured = pyqtSignal(str, object)
     drawn = pyqtSignal(QImage)
     summed = pyqtSignal(str)
-    _left = threading.Event()
-    """Set unless a thread is in the task ended last, of this dialog or an earlier one."""
-    _left.set()
-    _leaving: PreviewTask | None = None
-    """The task ended last: without Python's part of it QGIS may not run it to its end."""
+    _ended_last: PreviewTask | None = None
+    """The task ended last, of this dialog or an earlier one, in which a thread may be still.
+
+    Without Python's part of it QGIS may not run it to its end.
+    """
 
     def __init__(self, project: QgsProject, rows: Sequence[role_table.RoleRow], parent: QObject):
         super().__init__(parent)
@@ -108,18 +107,19 @@ class LivePreview(QObject):
         task.measured.disconnect(self._keep)
         task.drawn.disconnect(self.drawn)
         if task.status() == QgsTask.TaskStatus.Running:
-            type(self)._left, type(self)._leaving = task.left, task
+            type(self)._ended_last = task
         task.cancel()
 
     def wait_for_end(self) -> None:
         """Wait, with a time limit, until no thread is in the task ended by :meth:`stop`."""
-        self._left.wait(GIVE_UP_S)
+        if self._ended_last is not None:
+            self._ended_last.left.wait(GIVE_UP_S)
 
     def _start(self) -> None:
         if self._task is not None:
             # The cancelled one ends soon, and starts this again.
             return
-        if not self._left.is_set():
+        if self._ended_last is not None and not self._ended_last.left.is_set():
             # Otherwise a layer that hangs would block one more thread of the map's pool for each dialog.
             self._timer.start()
             return
