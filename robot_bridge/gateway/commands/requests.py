@@ -141,12 +141,7 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent by themselves as well."""
-
-        async def issue() -> list[CommandReport]:
-            # Within the task: what nobody foresaw of one robot must keep the Abort from no other.
-            return await self._commands.issue(orders)
-
-        return await self.send_if_unstored(orders, start_task(issue()))
+        return await self.send_if_unstored(orders, start_task(self._commands.issue(orders)))
 
     async def send_if_unstored(
         self, orders: list[CommandOrder], storing: asyncio.Task[T], *, is_pause: bool = False
@@ -219,7 +214,7 @@ class CommandRequests:
             except StoreError as error:
                 log.error("Aborts of %s cannot be written: %s", listed_names(robots), error)
             except Exception:
-                # Kept, they are stored one by one.
+                # What nobody foresaw of one robot ends this for none: those kept are stored one by one.
                 log.exception("Aborts of %s cannot be written", listed_names(robots))
         return done
 

@@ -106,17 +106,17 @@ class CommandService(CommandReader):
             self._unstored.drop(robot)
             self._late = {late for late in self._late if late[0] != robot}
 
-    def issue(
+    async def issue(
         self, orders: list[CommandOrder], also: persistence.Also | None = None
-    ) -> Coroutine[Any, Any, list[CommandReport]]:
+    ) -> list[CommandReport]:
         """Store new commands with their messages, and the writes ``also``, all or none; return the reports.
 
         A command with a known id is returned in its present state and changes nothing. An Abort that cannot
         be stored is kept, and stored before any other message to its robot. One of whatever the robot does
-        makes void the motions that are being checked when this is called.
+        makes void the motions that are being checked when this begins.
         """
         self.note_stop(order.robot for order in orders if order.is_stop)
-        return to_its_end(self._issue(orders, also))
+        return await to_its_end(self._issue(orders, also))
 
     def note_stop(self, robots: Iterable[str]) -> None:
         """Have no motion of ``robots`` stored that was asked by now, and is being checked."""

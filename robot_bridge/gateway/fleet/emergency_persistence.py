@@ -406,7 +406,7 @@ class StopWriter:
 
         :raises StoreError: when the database cannot be used; the stop must then be written again.
         """
-        issuing = start_task(self._issue(stop, robots, _write_stop))
+        issuing = start_task(self._issue(stop, robots, partial(_write_stop, stop)))
         await asyncio.wait({issuing}, timeout=BARE_AFTER_S)
         early = [] if issuing.done() else await self.add_bare(stop, readers)
         try:
@@ -463,9 +463,9 @@ class StopWriter:
         self,
         stop: StopRow,
         robots: Sequence[str],
-        also: Callable[[StopRow, Sequence[str], Connection], None],
+        also: Callable[[Sequence[str], Connection], None],
     ) -> None:
-        await self._commands.issue(orders_of(stop, robots), partial(also, stop, robots))
+        await self._commands.issue(orders_of(stop, robots), partial(also, robots))
 
     async def add_bare(self, stop: StopRow, robots: Sequence[str]) -> list[str]:
         """Send a bare Abort to those of ``robots`` that were sent none of this stop, and return them.
@@ -572,10 +572,10 @@ def _write_stop(stop: StopRow, robots: Sequence[str], connection: Connection) ->
         requests.remove_everywhere(connection, MOTION_OPS)
     else:
         # Another gateway stored it, and may have cleared it by now: its robots may be sent on.
-        _withdraw_motions(stop, robots, connection)
+        _withdraw_motions(robots, connection)
 
 
-def _withdraw_motions(_stop: StopRow, robots: Sequence[str], connection: Connection) -> None:
+def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:
     requests.remove_kinds(connection, robots, MOTION_OPS)
 
 
