@@ -17,6 +17,8 @@ PHONE: dict[str, Any] = {
     "locale": "en-GB",
 }
 """Options of a context of playwright's."""
+GATEWAY_LOST = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE", "ERR_FAILED", "WebSocket connection")
+"""What Chromium's console says of a gateway that ends, whatever was loaded from it at that moment."""
 PROGRAMS = ("chromium-headless-shell", "chromium", "google-chrome")
 """The best first: that without a desktop's windows opens a page for two thirds of the processor time."""
 

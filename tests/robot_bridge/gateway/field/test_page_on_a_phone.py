@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
+from tests.support.phone import GATEWAY_LOST
 from tests.support.processes import freeze
 
 SLOW = BUSY * 15_000
@@ -490,8 +491,7 @@ def test_the_geofences_alarms_that_are_not_listed_are_counted(notify):
 
 def test_a_gateway_that_is_gone_is_said_and_found_again(open_phone, bridge, tokens, robots):
     """The last one here: it ends the supervisor's desk."""
-    expected = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE", "WebSocket connection")
-    page = open_phone(bridge, f"#token={tokens['operator']}", expected=expected)
+    page = open_phone(bridge, f"#token={tokens['operator']}", expected=GATEWAY_LOST)
     is_connected(page)
     bridge.kill_gateway()
     text_is(page, "#banners", "does not answer. Robots are shown where they were")

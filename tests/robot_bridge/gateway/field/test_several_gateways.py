@@ -8,6 +8,7 @@ import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
+from tests.support.phone import GATEWAY_LOST
 
 SLOW = BUSY * 15_000
 
@@ -33,7 +34,7 @@ def chromium(pair, chromium):
 
 def test_a_page_whose_gateway_died_leads_to_another_one(pair, open_phone):
     a, b = pair
-    page = open_phone(a, expected=("ERR_CONNECTION_REFUSED",))
+    page = open_phone(a, expected=GATEWAY_LOST)
     page.locator("#connection.up").wait_for(timeout=SLOW)
     links = page.locator("#banners a")
     assert links.count() == 0

@@ -15,10 +15,10 @@ from robot_bridge.gateway.fleet.operator_updates import table_frame
 from robot_bridge.gateway.model.robots import Robots
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
+from tests.support.phone import GATEWAY_LOST
 from tests.support.wire import RefusedError
 
 SLOW = BUSY * 15_000
-LOST = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE", "ERR_FAILED", "WebSocket connection")
 HELD, GOES_ON = 19, 18
 SLEPT = "Date.now = (now => () => now() + 6e5)(Date.now)"
 """Ten minutes: performance.now() stands still in a phone that sleeps, and its clock does not."""
@@ -67,7 +67,7 @@ def desk(bridge):
 @pytest.fixture
 def page(open_phone, bridge, desk):
     """The page on a phone, connected, with the robots where they are."""
-    page = open_phone(bridge, expected=LOST)
+    page = open_phone(bridge, expected=GATEWAY_LOST)
     is_ready(page)
     return page
 
@@ -196,7 +196,7 @@ def test_a_target_for_which_nobody_waits_any_more_is_not_given_to_the_robot(page
 
 
 def test_a_cone_that_is_sent_again_is_sent_once(open_phone, bridge, desk):
-    page = open_phone(bridge, expected=LOST)
+    page = open_phone(bridge, expected=GATEWAY_LOST)
     lost = []
 
     def lose(socket):
@@ -220,7 +220,7 @@ def test_a_cone_that_is_sent_again_is_sent_once(open_phone, bridge, desk):
 
 
 def test_an_abort_goes_past_a_link_that_does_not_answer(open_phone, bridge, desk):
-    page = open_phone(bridge, expected=LOST)
+    page = open_phone(bridge, expected=GATEWAY_LOST)
     links = []
 
     def swallow(socket):
@@ -266,7 +266,7 @@ def test_a_second_press_clears_the_stop_that_the_first_one_was_for(page, bridge,
 
 
 def test_a_stop_that_is_over_before_it_was_answered_is_said_to_be(open_phone, bridge, desk):
-    page = open_phone(bridge, expected=LOST)
+    page = open_phone(bridge, expected=GATEWAY_LOST)
     kept = []
 
     def keep(socket):
@@ -289,7 +289,7 @@ def test_a_stop_that_is_over_before_it_was_answered_is_said_to_be(open_phone, br
 
 
 def test_a_stop_goes_through_while_the_site_is_on_its_way(open_phone, bridge, desk):
-    page = open_phone(bridge, "?nothing", expected=LOST)
+    page = open_phone(bridge, "?nothing", expected=GATEWAY_LOST)
     page.route("**/field/site.json", lambda route: None)
     page.reload()
     text_is(page, "#connection", "connecting")
