@@ -195,8 +195,11 @@ start_gateway() {
     gateway_facts >$running
 }
 
+# The gateway's own last lines: -u would have systemd's about it among them, which can be more than it has itself.
+show_gateway_log() { journalctl _SYSTEMD_UNIT=robot-bridge.service -n 5 -o cat --no-pager >&2 || true; }
+
 gateway_failed() {
-    journalctl -u robot-bridge -n 5 -o cat --no-pager >&2 || true
+    show_gateway_log
     stop "the gateway does not start: see the lines above" "docs/operation.md says what to do about each of them."
 }
 

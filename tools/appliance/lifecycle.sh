@@ -74,7 +74,7 @@ bring_in_version() {
     [ ! -e $UNITS/robot-bridge-maps.service ] || PREFIX=$PREFIX tools/service.sh install-maps >/dev/null || return 1
     administer database upgrade || return 1
     systemctl daemon-reload
-    systemctl start robot-bridge || { journalctl -u robot-bridge -n 5 -o cat --no-pager >&2; return 1; }
+    systemctl start robot-bridge || { show_gateway_log; return 1; }
     with_settings "$BRIDGE" doctor || return 1
     sources >"$STAMP" && gateway_facts >$SETTINGS/.running
     ! systemctl is-active -q robot-bridge-maps || systemctl restart robot-bridge-maps
