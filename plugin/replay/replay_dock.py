@@ -41,7 +41,7 @@ class ReplayDock(ActionDock):
         self.form = TimeRangeForm()
         self.map = ReplayMap(desk.canvas)
         self.map.setTemporalController(self.clockwork.controller)
-        self.banner = ScrollingText("fleet_replay_banner", lines=2)
+        self.banner = ScrollingText("fleet_replay_banner", lines=3)
         self.banner.set_text_style(BANNER)
         self.line = TimeLine()
         self.play = QToolButton()

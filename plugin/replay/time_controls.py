@@ -11,7 +11,7 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QDateTime, QEvent, QObject, QPointF, QRectF, QSize, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
-from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QToolTip, QWidget
+from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QLabel, QToolTip, QWidget
 
 from ...robot_bridge.core.messages.commands import CommandState
 from ..ui.glyphs import flat, lines, painting
@@ -184,12 +184,15 @@ class TimeRangeForm(QWidget):
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(4)
-        grid.addWidget(self.last, 0, 0)
-        grid.addWidget(self.load, 0, 1)
-        grid.addWidget(self.since, 1, 0)
-        grid.addWidget(self.until, 2, 0)
-        grid.addWidget(self.selected, 3, 0, 1, 2, Qt.AlignmentFlag.AlignLeft)
-        grid.setColumnStretch(0, 1)
+        grid.addWidget(self.last, 0, 0, 1, 2)
+        grid.addWidget(self.load, 0, 2)
+        for row, (name, box) in enumerate(((tr("From"), self.since), (tr("To"), self.until)), start=1):
+            label = QLabel(name)
+            label.setBuddy(box)
+            grid.addWidget(label, row, 0)
+            grid.addWidget(box, row, 1)
+        grid.addWidget(self.selected, 3, 0, 1, 3, Qt.AlignmentFlag.AlignLeft)
+        grid.setColumnStretch(1, 1)
 
     def _last_changed(self, *_: object) -> None:
         seconds = LAST.get(self.last.currentText())

@@ -260,6 +260,15 @@ class ConnectionsWidget(QWidget):
         self._list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self._list.setColumnWidth(0, 150)
         self._list.setColumnWidth(1, 260)
+        self._hint = QLabel(
+            tr("Press New… for a gateway, or Import… for those that another computer has exported."),
+            self._list,
+        )
+        self._hint.setObjectName("fleet_connections_hint")
+        self._hint.setWordWrap(True)
+        self._hint.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._hint.setEnabled(False)
+        QHBoxLayout(self._list.viewport()).addWidget(self._hint)
         self._verdict = ResultLabel()
         self._trial = ConnectionTest(self)
         self._trial.tested.connect(self._verdict.show_verdict)
@@ -295,6 +304,7 @@ class ConnectionsWidget(QWidget):
             self._list.addTopLevelItem(item)
             if one.name == selected:
                 self._list.setCurrentItem(item)
+        self._hint.setHidden(self._list.topLevelItemCount() > 0)
         self._selection_changed()
 
     def selected(self) -> list[str]:

@@ -9342,6 +9342,11 @@
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
+            <source>From</source>
+            <translation>Des de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
             <source>From when on</source>
             <translation>Des de quan</translation>
         </message>
@@ -9359,6 +9364,11 @@
             <location filename="../../plugin/replay/time_controls.py" />
             <source>Selected only</source>
             <translation>Només els seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
+            <source>To</source>
+            <translation>Fins a</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
@@ -9505,6 +9515,11 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>New connection</source>
             <translation>Connexió nova</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Press New… for a gateway, or Import… for those that another computer has exported.</source>
+            <translation>Premeu Nova… per a una passarel·la, o Importa… per a les que ha exportat un altre ordinador.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

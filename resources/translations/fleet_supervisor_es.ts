@@ -9342,6 +9342,11 @@
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
+            <source>From</source>
+            <translation>Desde</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
             <source>From when on</source>
             <translation>Desde cuándo</translation>
         </message>
@@ -9359,6 +9364,11 @@
             <location filename="../../plugin/replay/time_controls.py" />
             <source>Selected only</source>
             <translation>Solo los seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
+            <source>To</source>
+            <translation>Hasta</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
@@ -9505,6 +9515,11 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>New connection</source>
             <translation>Conexión nueva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Press New… for a gateway, or Import… for those that another computer has exported.</source>
+            <translation>Pulse Nueva… para una pasarela, o Importar… para las que ha exportado otro ordenador.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

@@ -9278,6 +9278,11 @@
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
+            <source>From</source>
+            <translation>Ettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
             <source>From when on</source>
             <translation>Mikortól</translation>
         </message>
@@ -9295,6 +9300,11 @@
             <location filename="../../plugin/replay/time_controls.py" />
             <source>Selected only</source>
             <translation>Csak a kijelöltek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/replay/time_controls.py" />
+            <source>To</source>
+            <translation>Eddig</translation>
         </message>
         <message>
             <location filename="../../plugin/replay/time_controls.py" />
@@ -9439,6 +9449,11 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>New connection</source>
             <translation>Új kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Press New… for a gateway, or Import… for those that another computer has exported.</source>
+            <translation>Az Új… gombbal egy átjárót vesz fel, az Importálás… gombbal azokat, amelyeket egy másik számítógép mentett ki.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

@@ -92,6 +92,16 @@ def test_a_new_connection_is_tested_and_kept(widget, gateway, wait):
     assert listed(widget) == ["Yard"]
 
 
+def test_an_empty_list_says_how_it_is_filled(widget):
+    hint = widget.findChild(QLabel, "fleet_connections_hint")
+    assert hint.isVisible()
+    Connections().store(GatewayConnection("Yard", "ws://127.0.0.1:9/desk"))
+    widget.show_all("Yard")
+    assert not hint.isVisible()
+    press(widget, "fleet_connections_remove")
+    assert hint.isVisible()
+
+
 def test_a_gateway_that_is_not_there_is_told_with_what_to_do(widget, wait):
     Connections().store(GatewayConnection("Yard", "ws://127.0.0.1:9/desk"))
     widget.show_all("Yard")
