@@ -261,8 +261,7 @@ class ConnectionsWidget(QWidget):
         self._list.setColumnWidth(0, 150)
         self._list.setColumnWidth(1, 260)
         self._hint = QLabel(
-            tr("Press New… for a gateway, or Import… for those that another computer has exported."),
-            self._list,
+            tr("Press New… for a gateway, or Import… for those that another computer has exported.")
         )
         self._hint.setObjectName("fleet_connections_hint")
         self._hint.setWordWrap(True)
